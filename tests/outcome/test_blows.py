@@ -28,8 +28,8 @@ REPORT = rl.scenes.report
 
 def test_the_reports_blow_rolls_the_body_over() -> None:
     """A press 1.5 m from the centre rolls the body over if F is at least m (k^2 + b^2) omega_R/d =
-    44.3 N s. The blow needs a friction of 2/3. N vanishes at speeds above 4.8432 rad/s, after more
-    than 72.65 N s."""
+    44.3 N s. The blow needs a friction of 2/3. N vanishes during the roll if the speed after the
+    blow exceeds 4.8432 rad/s, that is, after a press above 72.65 N s."""
     assert outcome(REPORT) is Outcome.ROLLS_OVER
     assert outcome(replace(REPORT, impulse=None)) is Outcome.RESTS
     F = np.array([10.0, 44.0, 44.4, 72.6, 72.7, -1.0])
@@ -61,10 +61,11 @@ def test_starts_without_rolling_have_the_expected_outcome() -> None:
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_outcomes_on_a_slope_agree_with_closed_forms(side: int) -> None:
-    """A circle rolls down the slope. Against the slope it turns back after a path of omega^2 (a^2 +
-    k^2)/(2 g sin(slope)), which may be longer or shorter than half a turn. A body in equilibrium,
-    h' = h tan(slope), rests with the friction tan(slope). On a slope of 0.1 the 2:1 disc rocks, and
-    rolls over from flat at 3 rad/s downhill."""
+    """A circle released at rest rolls down the slope. A circle that starts uphill turns back after
+    a path of omega^2 (a^2 + k^2)/(2 g sin(slope)), which may be longer or shorter than half a turn.
+    A body in equilibrium, h' = h tan(slope), rests if the friction is at least tan(slope). On a
+    slope of 0.1 the 2:1 disc rocks if released flat, and rolls over from flat at 3 rad/s
+    downhill."""
     round_one = Scene(1.0, 1.0, slope=0.1 * side)
     assert outcome(round_one) is Outcome.ROLLS_OVER
     half_turn = math.sqrt(2 * 9.81 * math.sin(0.1) * math.pi / 1.5)
@@ -83,7 +84,7 @@ def test_outcomes_on_a_slope_agree_with_closed_forms(side: int) -> None:
 
 
 def test_an_outcome_on_an_almost_level_slope_may_remain_undecided() -> None:
-    """A start near the tip, 1e-15 off equilibrium, takes 21 growth times of 0.6 s to fall."""
+    """A start 4e-15 off the equilibrium near the tip takes some 30 growth times (0.6 s) to fall."""
     slope = 1e-3
     incline = math.tan(slope)
     tangent = (3 + math.sqrt(9 - 16 * incline**2)) / (8 * incline)
@@ -93,7 +94,7 @@ def test_an_outcome_on_an_almost_level_slope_may_remain_undecided() -> None:
     assert outcome(unmoved) in (Outcome.EDGE, Outcome.ROLLS_OVER)
 
 
-def test_impulses_broadcast_and_replace_the_scenes_own() -> None:
+def test_impulses_broadcast_and_replace_that_of_the_scene() -> None:
     F, d = np.array([[20.0], [48.0], [70.0]]), np.array([-1.5, 0.3, 1.2, 1.5])
     for scene in (REPORT, replace(REPORT, slope=0.05, friction=2.0)):
         found = outcome(scene, Impulse.press(F, d))
@@ -107,9 +108,9 @@ def test_impulses_broadcast_and_replace_the_scenes_own() -> None:
 
 
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.0, 1.5), (1.0, 1.0)])
-def test_a_body_at_rest_needs_the_friction_tan_slope(a: float, b: float) -> None:
-    """The weight acts through the contact if the contact leads the centre by h tan(slope). The
-    maximum of lead/h is flat, so that the largest of 1e5 angles misses it by some 1e-9."""
+def test_a_body_at_rest_needs_a_friction_of_tan_slope(a: float, b: float) -> None:
+    """In equilibrium the contact lies h tan(slope) ahead of the centre. Near its maximum lead/h
+    varies so little that the largest of 1e5 samples is only some 1e-9 below the maximum."""
     theta = np.linspace(0.0, math.pi, 100_001)
     leads = rl.geometry.support_slope(theta, a=a, b=b) / rl.geometry.support(theta, a=a, b=b)
     steepest = math.atan(leads.max())
@@ -120,11 +121,11 @@ def test_a_body_at_rest_needs_the_friction_tan_slope(a: float, b: float) -> None
     assert math.isinf(required_friction(steep, to="rest"))
 
 
-def test_required_friction_is_what_the_blow_and_the_motion_need() -> None:
-    """Required friction is the largest |F|/N of the rolling after the blow, sampled in long double
-    (1e-12 of the forces). With less friction the certificate states where rolling ends, and with
-    slightly more it proves rolling. Its polynomials are squared, so about 1e-6 in between remains
-    undecided."""
+def test_required_friction_suffices_for_both_the_blow_and_the_motion() -> None:
+    """Required friction is the larger of the friction that the blow needs and the largest |F|/N of
+    the rolling after it, which is sampled in long double (errors of 1e-12 of the forces). The
+    certificate disproves rolling with slightly less friction and proves it with slightly more. Its
+    polynomials are squared, so it leaves frictions within about 1e-6 undecided."""
     by_the_blow = by_the_motion = never = 0
     for scene in random_scenes(400, 11, struck=0.8, slope=0.0):
         found = required_friction(scene)
@@ -153,9 +154,9 @@ def test_required_friction_is_what_the_blow_and_the_motion_need() -> None:
 
 
 @pytest.mark.parametrize("to", ["roll", "rest"])
-def test_required_friction_of_arrays_equals_that_of_scenes_bit_for_bit(to: Any) -> None:
-    """The bodies roll, slide or fly, with and without a blow or a slope. Neither the layout of the
-    arrays nor the workers change a bit."""
+def test_required_friction_is_bit_for_bit_the_same_for_arrays_and_single_scenes(to: Any) -> None:
+    """The bodies roll, slide or fly, with and without a blow or a slope. Neither the memory layout
+    of the arrays nor the number of workers changes a bit."""
     rng = np.random.default_rng(4)
     for start in ({}, {"x_dot": rng.normal(size=7)}, {"z": 4.0}, {"impulse": 1}):
         given: dict[str, Any] = {
@@ -203,8 +204,9 @@ def test_required_friction_equals_known_values() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_required_friction_is_just_enough_for_rocking_on_a_slope(seed: int) -> None:
-    """A body that rocks on a slope keeps rolling with this friction in the computed motion, and
-    slips with 1e-8 less. A body whose required friction is infinite rolls down and away."""
+    """In the computed motion a body that rocks on a slope keeps rolling if its friction is 1e-10
+    above the required one, and slips if it is 1e-8 below. A body whose required friction is
+    infinite stops rolling or makes more than half a turn."""
     rng = np.random.default_rng(seed)
     finite = 0
     while finite < 5:
@@ -229,7 +231,8 @@ def test_required_friction_is_just_enough_for_rocking_on_a_slope(seed: int) -> N
 @pytest.mark.parametrize("distance", [1.2, -0.4])
 @pytest.mark.parametrize("theta", [0.0, 0.3, -2.0])
 def test_a_blow_gives_the_requested_speed(theta: float, distance: float, before: float) -> None:
-    """The blow law gives omega from F to within the rounding of the gain and of both speeds."""
+    """After the blow the speed is the requested one, to within the rounding of the speeds before
+    and after the blow and of their difference."""
     scene = replace(REPORT, theta=theta, omega=before, impulse=Impulse(jx=3.0))
     lead = float(rl.geometry.support_slope(theta, a=2.0, b=1.0))
     wanted = before + math.copysign(0.9, distance - lead)
@@ -251,8 +254,8 @@ def test_a_blow_can_stop_a_body() -> None:
 def test_blow_to_is_the_weakest_press_that_rolls_the_body_over(
     theta: float, distance: float
 ) -> None:
-    """The press on a body at rest is F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The
-    motion passes the tip with 1e-12 more, and turns back with 1e-12 less."""
+    """The press on a body at rest is F = m D omega/(d - h') with D omega^2 = 2 g (a - h). With
+    1e-12 more the motion passes the tip; with 1e-12 less it turns back."""
     scene = replace(REPORT, theta=theta)
     blow = blow_to(scene, distance)
     h = math.hypot(2.0 * math.sin(theta), math.cos(theta))
@@ -272,8 +275,8 @@ def test_blow_to_is_the_weakest_press_that_rolls_the_body_over(
 
 def test_a_harder_press_may_need_less_friction() -> None:
     """A 1.1:1 disc needs a friction of 0.0614 at the speed of the separatrix and of 0.0492 at twice
-    this speed. With a friction of 0.055 the press gives a speed between these two, at which the
-    motion needs 0.055."""
+    this speed. If the friction is 0.055, `blow_to` returns the press for a speed between these two,
+    at which rolling needs exactly 0.055."""
     scene = Scene(1.1, 1.0, friction=0.055)
     blow = blow_to(scene, 0.02)
     after = replace(scene, impulse=blow)
@@ -282,11 +285,11 @@ def test_a_harder_press_may_need_less_friction() -> None:
     assert 1.1 < after.initial_state.omega / rl.thresholds(1.1, 1.0).roll_over_speed < 2
 
 
-def test_blow_to_allows_presses_up_to_their_limit() -> None:
-    """A lever a thousand times shorter would need a press above the limit. The product F d
-    determines the speed for either lever."""
+def test_blow_to_allows_presses_up_to_the_limit() -> None:
+    """With a lever of 2e-6 m the press is about half its limit; 1e-6 m would exceed the limit. The
+    product F d, which determines the speed, is the same for both tested levers."""
     usual, huge = (
         -blow_to(replace(REPORT, friction=math.inf), distance).jz for distance in (1e-3, 2e-6)
     )
-    assert 1e7 < huge < 10 * math.sqrt(2e12 * 9.81 * 2.0)  # mass sqrt(2e12 g a)
+    assert 1e7 < huge < 10 * math.sqrt(2e12 * 9.81 * 2.0)  # the limit is m sqrt(2e12 g a)
     assert huge * 2e-6 == pytest.approx(usual * 1e-3, rel=1e-9)

@@ -1,4 +1,4 @@
-"""`classify` gives known answers at edges, for arrays and by default."""
+"""`classify` gives known answers near thresholds, for arrays and with default arguments."""
 
 import math
 from typing import Any
@@ -16,7 +16,7 @@ from rolling_ellipse import Outcome, Scene, certify, classify, thresholds
 @pytest.mark.parametrize("friction", [0.0, 1e-9, 0.5, math.inf])
 @pytest.mark.parametrize("omega", [-1e6, -1e-5, 1.0, 1e6])
 def test_a_circle_rolls_forever_with_any_friction(omega: float, friction: float) -> None:
-    """A circle without friction moves in the same way, but its contact slides."""
+    """Without friction the circle moves in the same way, but its outcome is SLIPS."""
     for theta in (0.0, 0.7, 500.0):
         found = classify(a=0.7, b=0.7, omega=omega, theta=theta, friction=friction)
         assert found is (Outcome.ROLLS_OVER if friction else Outcome.SLIPS)
@@ -25,10 +25,10 @@ def test_a_circle_rolls_forever_with_any_friction(omega: float, friction: float)
 @pytest.mark.parametrize("gravity", [9.81, 1.62])
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.5, 1.0), (0.3, 0.9), (9.5, 1.0), (1.0, 9.5)])
 def test_starts_near_the_separatrix_are_edge_or_correct(a: float, b: float, gravity: float) -> None:
-    """Friction is infinite, and a ratio of axes below 9.75 keeps N > 0 slightly beyond the
-    separatrix. At the double nearest to the separatrix the answer is EDGE; a few ulp away it is
-    EDGE or correct. Every start is flat: theta = pi/2 is off by 6e-17, whose square has no
-    effect."""
+    """Friction is infinite, and at ratios of axes below 9.75 N stays positive even slightly above
+    the separatrix. At the double nearest to the separatrix the answer is EDGE; a few ulp away it is
+    EDGE or correct. Every start is flat: the double nearest to pi/2 is off by 6e-17, which matters
+    only through its square."""
     mp.mp.dps = DIGITS
     longer, shorter = mp.mpf(max(a, b)), mp.mpf(min(a, b))
     gyration2 = mp.mpf((a * a + b * b) / 4)  # as the package rounds it
@@ -55,9 +55,9 @@ def test_starts_near_the_separatrix_are_edge_or_correct(a: float, b: float, grav
     [(2.0, 1.0, 2.5), (2.0, 1.0, 3.2), (2.0, 1.0, 4.5), (0.7, 1.9, 1.0), (20.0, 1.0, 1.0)],
 )
 def test_the_outcome_changes_at_the_certified_friction(a: float, b: float, omega: float) -> None:
-    """A motion that rises from the flat position passes every height. |F|/N is known to about
-    1e-13, because the forces are rounded to about 1e-14 of the weight and N is at least a tenth of
-    the weight."""
+    """A motion that starts flat passes every height it can reach, so it needs the largest |F|/N of
+    the certificate. This ratio is known to about 1e-13, because the forces are rounded to about
+    1e-14 of the weight and N is at least a tenth of the weight."""
     theta = 0.0 if a > b else math.pi / 2
     needed = certify(Scene(a, b, omega=omega, theta=theta)).largest_friction_needed
     assert needed is not None
@@ -69,7 +69,7 @@ def test_the_outcome_changes_at_the_certified_friction(a: float, b: float, omega
         assert classify(**at, friction=needed * (1 - 1e-11)) is Outcome.SLIPS
 
 
-def test_a_rising_body_beyond_the_slip_angle_rolls_over_first() -> None:
+def test_a_body_that_rises_from_beyond_the_slip_angle_rolls_over() -> None:
     """The 2:1 disc that turns at 4.5 rad/s when flat needs a friction of 0.647 at 48.6 degrees, and
     hardly any near the tip. If the same motion starts above that angle, it passes the tip when
     rising and slips when falling."""
@@ -91,10 +91,10 @@ def test_a_rising_body_beyond_the_slip_angle_rolls_over_first() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.5, 10.0, math.inf])
 def test_a_body_turning_too_fast_to_stay_on_the_ground_loses_contact(friction: float) -> None:
-    """A free body on its tip leaves the ground if omega^2 exceeds g L/(L^2 - S^2). For axes of
-    1:1.5, a ratio below root three, N of rolling also vanishes first at this speed: a slower body
-    rolls over if friction is infinite. A change of 1e-11 in speed, 2e-11 in c, is far above
-    rounding."""
+    """A body on its tip, without any contact force, leaves the ground if omega^2 exceeds g L/(L^2 -
+    S^2). For axes of 1:1.5, a ratio below root three, this is also the least speed at which N of
+    rolling vanishes, so a slower body rolls over if friction is infinite. A change of 1e-11 in
+    speed changes c by 2e-11, far above rounding."""
     limit = math.sqrt(9.81 * 1.5 / (1.5**2 - 1))
     at: dict[str, Any] = {"a": 1.0, "b": 1.5, "friction": friction}
     below = Outcome.ROLLS_OVER if math.isinf(friction) else Outcome.SLIPS
@@ -121,7 +121,7 @@ def test_the_thinnest_body_rocks_if_slow_and_slips_if_fast(a: float, b: float) -
     assert classify(**at, theta=tip, omega=0.0) is Outcome.RESTS
 
 
-def test_the_default_is_a_disc_on_earth_with_unlimited_friction_lying_on_its_side() -> None:
+def test_the_defaults_are_a_disc_on_earth_at_theta_0_with_unlimited_friction() -> None:
     a, b = np.array([2.0, 0.5, 5.0])[:, None], 1.0
     omega = np.linspace(-8, 8, 101)
     usual: dict[str, Any] = {"theta": 0.0, "friction": math.inf, "gravity": 9.81, "workers": 1}

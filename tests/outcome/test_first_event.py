@@ -19,13 +19,13 @@ from rolling_ellipse import Outcome, classify
 
 STEPS, CHUNK = 4000, 100
 Codes = NDArray[np.int8]
-CLEAR = 1e-6  # share of forces, energy and gravity; a margin nearer to zero decides nothing
+CLEAR = 1e-6  # relative to forces, energy or gravity; scenes with a smaller margin are left out
 
 
 class Start(NamedTuple):
-    """Direction of a start, and its reduced angle in that direction, which rises from 0 when flat
-    to pi/2 on the tip. The angle exactly on the tip is -pi/2, because a half turn lies ahead in
-    either direction."""
+    """Direction in which a motion starts, and its reduced angle measured in that direction, from 0
+    when flat to pi/2 on the tip. A start exactly on the tip has the angle -pi/2, because half a
+    turn lies ahead in either direction."""
 
     direction: Long
     angle: Long
@@ -40,17 +40,18 @@ def start_of(sample: Sample) -> Start:
 
 
 def slack(moving: Motion, friction: Long, tangent: Long) -> Long:
-    """Margin of rolling at a tangent of the reduced angle; a margin of 1 means that all forces
-    would have to vanish. The oracle's errors are 1e-12 of their terms, and more where the energy,
-    or a - b, consists of rounding."""
+    """Margin of rolling relative to the forces, at a given tangent of the reduced angle. The oracle
+    returns margins in units of its errors, which are 1e-12 of the forces, and more where the energy
+    or a - b is itself little more than rounding."""
     cosine = 1 / np.sqrt(1 + tangent**2)
     found = oracles.rolling.forces(moving, np.abs(tangent) * cosine, cosine)
     return 1e-12 * np.minimum(*found.margins(friction))
 
 
 def least_slack(sample: Sample) -> Long:
-    """Smallest margin between the start and the tip or the turning point. The steps are even in v,
-    tan = waist sinh v, and so finer near flat and tip; golden section refines dips towards zero."""
+    """Smallest margin between the start and the tip or the turning point. The samples are evenly
+    spaced in v, where tan = waist sinh v, and therefore denser near the flat position and the tip.
+    A golden-section search refines minima close to zero."""
     moving, angle = sample.motion(), start_of(sample).angle
     on = oracles.rolling.chart(moving)
     highest = on.waist * np.sinh(on.top)
@@ -64,8 +65,8 @@ def least_slack(sample: Sample) -> Long:
         moving.at((slice(None), None)), friction[:, None], on.waist[:, None] * np.sinh(v)
     )
     least: Long = values.min(1)
-    # Between samples at most 0.016 apart, a dip is deeper by at most 3e-5 of its second derivative
-    # by v, and these forces have no feature narrower than v = 0.1 or so.
+    # The samples are at most 0.016 apart in v, so a minimum lies below the lowest of them by at
+    # most 3e-5 times the second derivative. The forces have no feature narrower than about 0.1.
     rows, columns = oracles.rolling.local_minima(values, np.where(least < -0.01, -np.inf, 0.01))
     if rows.size:
         part, held, waist = moving.at(rows), friction[rows], on.waist[rows]
@@ -92,7 +93,7 @@ def walk(sample: Sample) -> Walk:
     barrier = moving.gravity * np.abs(moving.a - moving.b)
     over = (moving.lift - barrier) / (moving.lift + barrier)
     rolls = least_slack(sample)
-    rests = (sample.omega == 0) & (2 * sample.theta / PI % 1 == 0)  # no other start is near an axis
+    rests = (sample.omega == 0) & (2 * sample.theta / PI % 1 == 0)  # no start is only near an axis
     slips = (rolls < 0) | (sample.friction == 0)
     outcome = np.select(
         [rests, pressed < 0, slips, over < 0],
@@ -110,8 +111,8 @@ class Walked(NamedTuple):
 
 @pytest.fixture(scope="module")
 def walked() -> list[Walked]:
-    """800 scenes and their answers, without the fifth that lies too close to a threshold, in
-    chunks: 100 scenes x 4001 angles of long double take 6.4 MB per array."""
+    """800 scenes and their answers in chunks of 100, without those too close to a threshold (about
+    a fifth). An array of 100 scenes x 4001 angles in long double takes 6.4 MB."""
     chunks = []
     for seed in range(8):
         sample, _ = random_sample(CHUNK, seed)
@@ -122,8 +123,8 @@ def walked() -> list[Walked]:
 
 
 def test_the_random_scenes_cover_every_case(walked: list[Walked]) -> None:
-    """The scenes have every outcome, rise and fall, and include bodies that would slip only at
-    heights out of reach."""
+    """The scenes include every outcome except jams, rising and falling starts, and rising bodies
+    that would slip only at angles below their start."""
     counts: Counter[int] = Counter()
     beyond = up = down = 0
     for sample, truth in walked:
@@ -164,8 +165,8 @@ def test_a_wrong_direction_is_detected(walked: list[Walked]) -> None:
 
 
 def test_random_scenes_never_jam_and_are_rarely_undecided() -> None:
-    """Among 1e5 scenes rounding changes the margins by about 1e-12 of their largest value, so that
-    even many scenes near the thresholds leave far fewer than one in a thousand undecided."""
+    """Rounding changes the margins by only about 1e-12 of their largest value, so that far fewer
+    than one in a thousand of the 1e5 scenes are undecided."""
     rng = np.random.default_rng(31)
     count = 100_000
     a = 10 ** rng.uniform(-2, 2, count)

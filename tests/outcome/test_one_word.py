@@ -48,7 +48,7 @@ def tips_passed(scene: Scene, theta: float) -> int:
 
 
 def met_first(scene: Scene) -> Outcome | None:
-    """The first outcome in samples of the model "contact", or None."""
+    """The first outcome seen in samples of the contact model, or None if there is none."""
     span = 4 * math.sqrt(max(scene.a, scene.b) / scene.gravity)
     for _ in range(SPANS):
         times = np.linspace(0, span, SAMPLES)
@@ -82,7 +82,7 @@ def met_first(scene: Scene) -> Outcome | None:
 
 
 def pressed_by_gravity(scene: Scene, start: InitialState) -> float:
-    """c = g cos(slope) + h'' omega^2 over the size of its terms, h'' = (a b)^2/h^3 - h."""
+    """c = g cos(slope) + h'' omega^2, h'' = (a b)^2/h^3 - h, divided by the sum of its |terms|."""
     h = float(geometry.support(start.theta, a=scene.a, b=scene.b))
     turning = ((scene.a * scene.b) ** 2 / h**3 - h) * start.omega**2
     gravity = scene.gravity * math.cos(scene.slope)
@@ -185,7 +185,7 @@ def test_scenes_that_once_had_contradictory_outcomes_have_only_one() -> None:
         (Scene(1.0, 1.0, friction=0.0, omega=3.0), Outcome.SLIPS),
         (Scene(1.0, 1.0, friction=0.0), Outcome.RESTS),
         (Scene(2.0, 1.0, theta=0.5, x_dot=3.0), Outcome.ROCKS),
-        (  # the body passes the tip by 0.8 degrees and returns
+        (  # the body passes the tip by 0.8 degrees and falls back
             Scene(
                 0.2521, 0.249, slope=-0.79, omega=8.591, inertia=0.01358, friction=1e3
             ),
@@ -199,8 +199,8 @@ def test_scenes_that_once_had_contradictory_outcomes_have_only_one() -> None:
 
 
 def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
-    """Starts without slip for which c < 0 < N, and the friction that rolling needs. As on the tip
-    h'' < 0; the speed gives the chosen c, and Newton's law gives N and F."""
+    """Starts without slip for which c < 0 < N, and the friction that rolling needs. As on the tip,
+    h'' < 0. The speed follows from a chosen c, and N and F from Newton's law."""
     rng = np.random.default_rng(3)
     while count:
         a, b = 10 ** rng.uniform(-0.4, 0.4, 2)
@@ -223,9 +223,9 @@ def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
         yield Scene(a, b, slope=slope, theta=theta, omega=omega), needed
 
 
-def test_both_motions_are_reported_where_a_body_may_roll_or_fly() -> None:
-    """The body rolls with enough friction and flies with less; the message states that both motions
-    are possible."""
+def test_both_motions_are_reported_if_a_body_may_roll_or_fly() -> None:
+    """With enough friction the body rolls, and the messages state that two motions are possible.
+    With less it flies, and the certificate does not state this."""
     told = "Two motions are possible"
     for scene, needed in wedged_scenes(300):
         for friction in (1.01 * needed, 10 * needed, math.inf):

@@ -23,23 +23,23 @@ def recipe() -> dict[str, Any]:
     ("friction", "speed"),
     [
         (0.05, 3.705407360274),  # still slides over the tip
-        (0.1, 3.475473717038),  # rolls before it
+        (0.1, 3.475473717038),  # rolls before the tip
         (0.2, 3.106752254887),
         (0.3, 2.955400074211),
     ],
 )
-def test_the_least_speed_is_the_known_one(recipe: Any, friction: float, speed: float) -> None:
-    """The speed agrees to all known digits. A simulated motion passes the tip just above it and not
-    just below: 1e-9 is a thousand times the error of 20 s near the tip, where changes grow most."""
+def test_the_least_speed_has_known_values(recipe: Any, friction: float, speed: float) -> None:
+    """The speed agrees to all known digits. A simulated motion passes the tip if its speed is 1e-9
+    higher, and does not if it is 1e-9 lower. This change is a thousand times the error of the
+    motion after 20 s near the tip, where errors grow most."""
     assert recipe["least_speed"](friction) == pytest.approx(speed, abs=1e-12)
     for change, times in ((1e-9, 1), (-1e-9, 0)):
         scene = Scene(2.0, 1.0, omega=speed + change, friction=friction)
         assert simulate(scene, 20.0).when(event="roll_over").size == times
 
 
-def test_with_enough_friction_it_is_the_speed_of_rolling(recipe: Any) -> None:
-    """The bisection ends between two neighbouring doubles; the proof of rolling is exact to within
-    rounding."""
+def test_with_enough_friction_the_least_speed_is_that_of_rolling(recipe: Any) -> None:
+    """The bisection ends at two neighbouring doubles, and `outcome` is exact to within rounding."""
     assert recipe["least_speed"](1.0) == pytest.approx(
         thresholds(2.0, 1.0).roll_over_speed, rel=4e-16
     )

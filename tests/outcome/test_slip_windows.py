@@ -1,7 +1,7 @@
 """`slip_windows` contain exactly the speeds at which rolling needs more than the given friction.
 
-The oracle samples |F|/N over the angle in long double. The package finds the ends of windows by a
-scan over the angle, where the law is linear in omega^2, and proves them with polynomials.
+The oracle samples |F|/N over the angle in long double. At each angle the law is linear in omega^2:
+the package finds the ends of windows by scanning the angle, and proves them with polynomials.
 """
 
 import math
@@ -113,8 +113,8 @@ def test_windows_agree_with_certify_and_outcome() -> None:
 
 
 def test_a_body_between_its_slip_windows_rolls_forever() -> None:
-    """A 2:1 disc with friction 0.4 slips at 1.8 and at 4.6 rad/s, and not at 2.5 (it rocks) or 3.5
-    rad/s (it rolls over and over); the events of the contact model confirm this."""
+    """A 2:1 disc with friction 0.4 slips at 1.8 and at 4.6 rad/s, but neither at 2.5 rad/s, where
+    it rocks, nor at 3.5 rad/s, where it rolls over and over. The contact model confirms this."""
     (low, high), (again, _) = thresholds(2.0, 1.0, friction=0.4).slip_windows
     assert low < 1.8 < high < 2.5 < 3.5 < again < 4.6
     for omega, slips in ((1.0, False), (1.8, True), (2.5, False), (3.5, False), (4.6, True)):

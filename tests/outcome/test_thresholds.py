@@ -1,4 +1,4 @@
-"""`thresholds` agree with closed forms, printed numbers, and the definition of each speed."""
+"""`thresholds` agrees with closed forms, printed numbers, and the definition of each speed."""
 
 import math
 from dataclasses import replace
@@ -79,7 +79,7 @@ def test_the_defaults_are_a_disc_on_earth_with_unlimited_friction() -> None:
 @both
 @inertias
 def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str) -> None:
-    """Below the speed N stays positive during the whole turn, and just above it N does not. At the
+    """Below the speed N stays positive during the whole turn, and just above it N does not. At that
     speed N vanishes at the stated angle."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
@@ -88,7 +88,8 @@ def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str)
     assert normal[0] > 0 > normal[1]
     assert np.all(extremes(rolling(shape, gyration2, lower(speed))).normal > 0)
     there = forces_at(rolling(shape, gyration2, speed), shape, found.contact_loss_angle)
-    # N is stationary at its minimum, whose angle is known to the root of the rounding, 1e-8
+    # N is stationary at its minimum, so its angle is known only to 1e-8, the square root of the
+    # rounding error
     assert abs(there.normal[0]) <= 100 * there.normal_error[0]
     assert 0 <= known(found.contact_loss_angle) <= math.pi / 2
 
@@ -97,7 +98,7 @@ def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str)
 @inertias
 @pytest.mark.parametrize("friction", [0.01, 0.2, 0.5, 1.3, 10.0])
 def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: float) -> None:
-    """The slip speed is the smallest speed in the flat position at which rolling needs the
+    """The slip speed is the smallest speed in the flat position at which rolling needs all of the
     friction."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2, friction=friction)
@@ -113,7 +114,9 @@ def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: 
 
 @both
 @inertias
-def test_friction_to_roll_over_is_the_largest_that_is_needed(shape: Shape, kind: str) -> None:
+def test_friction_to_roll_over_is_the_largest_needed_at_the_separatrix(
+    shape: Shape, kind: str
+) -> None:
     """The value is the largest friction needed at the energy of the barrier, or inf if N vanishes
     first."""
     gyration2 = gyration2_of(shape, kind)
@@ -129,8 +132,8 @@ def test_friction_to_roll_over_is_the_largest_that_is_needed(shape: Shape, kind:
 
 
 def painleve(shape: Shape, gyration2: float) -> tuple[float, float]:
-    """Least mu for which a normal push on a sliding contact has a normal response <= 0, and its
-    reduced angle: 1/m + h'^2/I <= mu h |h'|/I."""
+    """Least mu at which a normal force on a sliding contact does not accelerate it away from the
+    ground, 1/m + h'^2/I <= mu h |h'|/I, and the reduced angle where this happens."""
 
     def least(tangent: Long) -> Long:
         cosine = 1 / np.sqrt(1 + tangent**2)
@@ -147,7 +150,7 @@ def painleve(shape: Shape, gyration2: float) -> tuple[float, float]:
 @both
 @inertias
 def test_painleves_friction_agrees_with_its_definition(shape: Shape, kind: str) -> None:
-    """The least friction is exact to 1e-13, the angle of its minimum to the square root of that."""
+    """The least friction agrees to 1e-13, its angle to about the square root of this error."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     friction, angle = painleve(shape, gyration2)
@@ -166,9 +169,9 @@ def test_a_circle_has_no_thresholds() -> None:
 
 
 #
-# At the threshold c = g + h'' omega^2 vanishes on the tip. Where c = 0 while the body slides, N = F
-# = 0 and omega is stationary, so that the slope of c is omega^2 times that of h'', which falls up
-# to the tip: c cannot touch zero there, only cross it; on the tip h'' is least, and so can c be.
+# At the lift-off speed c = g + h'' omega^2 vanishes on the tip. Before the tip c can only cross
+# zero and not touch it: if c = 0 in a slide, N = F = 0, so that omega is stationary and c varies as
+# omega^2 h'', which falls all the way up to the tip. On the tip h'' is least, so c can touch zero.
 
 
 def lift_off(shape: Shape, gyration2: float, friction: float) -> float:
@@ -181,11 +184,11 @@ def lift_off(shape: Shape, gyration2: float, friction: float) -> float:
     [((2.0, 1.0), "disc"), ((1.0, 5.0), "disc"), ((0.7, 1.9), "hoop"), ((9.0, 1.0), "core")],
 )
 def test_the_lift_off_speed_is_exact_with_infinite_friction(shape: Shape, kind: str) -> None:
-    """Rolling ends where N = 0, and N = 0 in the following slide as well: the centre falls freely,
-    in contact, and just reaches the tip if z.^2 = h'^2 omega^2 = 2 g (L - h). Two equations give
-    the angle and the speed at which the slide starts, to 30 digits. The package solves the first by
-    the root of a polynomial and the second in closed form: 1e-11 allows 1e-13 of forces that cancel
-    to N = 0 a hundredfold."""
+    """Rolling ends where N = 0, and N = 0 in the following slide as well: the centre moves freely
+    while the body touches the ground, and just reaches the tip if z_dot^2 = h'^2 omega^2 = 2 g (L -
+    h). Two equations, solved to 40 digits, give the angle and the speed at which the slide starts.
+    The package solves the first as the root of a polynomial and the second in closed form. The
+    tolerance of 1e-11 is a hundred times 1e-13, because the terms of N cancel there."""
     mp.mp.dps = DIGITS
     gyration2 = gyration2_of(shape, kind)
     long, short = mp.mpf(max(shape)), mp.mpf(min(shape))
@@ -224,12 +227,12 @@ def test_the_lift_off_speed_is_exact_with_infinite_friction(shape: Shape, kind: 
 @both
 @inertias
 def test_the_lift_off_speed_is_exact_without_friction(shape: Shape, kind: str) -> None:
-    """(k^2 + h'^2) omega^2/2 + g h is constant without a force along the ground; h' = 0 flat and on
-    the tip. The package integrates to 1e-13 per step; one slide from flat to tip takes some ten
-    steps, whose errors do not grow here, so the bound is 1e-12."""
+    """(k^2 + h'^2) omega^2/2 + g h is constant without a force along the ground, and h' = 0 in the
+    flat position and on the tip. The package integrates to 1e-13 per step. A slide from flat to tip
+    takes some ten steps, whose errors do not grow here, so the bound is 1e-12."""
     gyration2 = gyration2_of(shape, kind)
     long, short = max(shape), min(shape)
-    # h'' = S^2/L - L on the tip, so the free body just leaves the ground there
+    # h'' = S^2/L - L on the tip, so at this speed a body just leaves the ground there
     tip_speed2 = GRAVITY * long / ((long - short) * (long + short))
     exact = math.sqrt(tip_speed2 + 2 * GRAVITY * (long - short) / gyration2)
     assert lift_off(shape, gyration2, 0.0) == pytest.approx(exact, rel=1e-12)
@@ -244,9 +247,10 @@ def test_the_lift_off_speed_is_exact_without_friction(shape: Shape, kind: str) -
     ],
 )  # fmt: skip
 def test_only_faster_bodies_lift_off(shape: Shape, kind: str, friction: float) -> None:
-    """A slower body stays on the ground up to the tip; a faster body leaves the ground before. This
-    holds close to the threshold, where 1e-10 of the speed moves the zero of c from the tip by some
-    1e-5 rad, and far from it. test_contact_reference.py judges slides in 30 digits."""
+    """A body slower than the threshold stays on the ground up to the tip; a faster one leaves it
+    before the tip. This holds far from the threshold and close to it, where a change of 1e-10 in
+    speed moves the zero of c by some 1e-5 rad. test_contact_reference.py checks slides to 30
+    digits."""
     gyration2 = gyration2_of(shape, kind)
     speed = lift_off(shape, gyration2, friction)
     flat = flat_of(shape)
@@ -272,11 +276,11 @@ def on_its_way_up(event: Event) -> bool:
 def test_a_body_jams_only_between_its_jam_speeds(
     a: float, gyration2: float, gravity: float, friction: float
 ) -> None:
-    """For bodies with mass near the centre, above Painleve's friction, the contact model confirms
-    the jam speeds, even near the ends of the ranges. The distance from an end is 1e-4 at least:
-    where c and B vanish together, the last digits of a slide decide between a jam and leaving. The
-    longest body slips at 0.24 rad/s, leaves the ground at more than 50 times that and jams at 16 to
-    17 rad/s: the scan for jams continues while weight matters."""
+    """The mass of these bodies is near their centre, and the friction exceeds Painleve's. The
+    contact model confirms the ranges of jam speeds up to 1e-4 from their ends. Nearer to an end,
+    where c and B vanish together, the last digits of a slide decide between a jam and lift-off. The
+    longest body slips at 0.24 rad/s, leaves the ground above 50 times that speed and jams at 16 to
+    17 rad/s, so the search for jams must continue up to speeds at which weight hardly matters."""
     found = thresholds(a, 1.0, gravity=gravity, gyration2=gyration2, friction=friction)
     assert friction > found.painleve_friction
     assert a == 2.0 or found.lift_off_speed > 50 * known(found.slip_speed)
@@ -320,15 +324,15 @@ def test_nearly_round_bodies_slip_and_lift_off_together_with_infinite_friction()
         speed2 = 9.81 * ratio / ((ratio - 1) * (ratio + 1))
         gyration2 = (ratio * ratio + 1) / 4
         flat2 = ((gyration2 + ratio**2) * speed2 + 2 * 9.81 * (ratio - 1)) / (gyration2 + 1)
-        # closed forms; rolling ends some 1e-7 from the tip, and c changes by the square of this
-        # distance
+        # the closed form is for rolling that ends on the tip; it ends some 1e-7 before the tip,
+        # where c differs by the square of this distance
         assert found.lift_off_speed == pytest.approx(math.sqrt(flat2), rel=1e-12)
         assert known(found.slip_speed) <= found.lift_off_speed
 
 
 def test_slow_fields_are_computed_on_first_access() -> None:
-    """After the first access slow fields act like any other field, also in copies and
-    comparisons."""
+    """Slow fields are stored on first access. Copies and comparisons do not depend on whether the
+    fields have been computed."""
     found, again = thresholds(2.0, 1.0, friction=0.5), thresholds(2.0, 1.0, friction=0.5)
     assert "lift_off_speed" not in vars(found) and "jam_speeds" not in vars(found)
     assert found.lift_off_speed is found.lift_off_speed is vars(found)["lift_off_speed"]

@@ -1,4 +1,4 @@
-"""Motions to draw, and a check that pictures leave no pyplot figure open."""
+"""Motions to draw, and a check that no picture opens a window or leaves a pyplot figure open."""
 
 import warnings
 from collections.abc import Callable, Iterator
@@ -32,7 +32,8 @@ def report() -> rl.Trajectory:
 
 @pytest.fixture
 def several(report: rl.Trajectory) -> list[rl.Trajectory]:
-    """A rolling motion, and two simulations in coordinates whose steps violate the constraints."""
+    """A rolling motion, and two simulations of it with Lagrange multipliers whose steps violate the
+    constraints."""
     how: dict[str, Any] = {"model": "multipliers", "method": "rk4", "stabilization": "none"}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.StabilityWarning)
@@ -41,7 +42,7 @@ def several(report: rl.Trajectory) -> list[rl.Trajectory]:
 
 @pytest.fixture(autouse=True)
 def nothing_left_open(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """No picture opens a window; a picture drawn into given axes leaves no pyplot figure."""
+    """Fail a test that calls plt.show() or leaves a pyplot figure open."""
 
     def show(*_: object, **__: object) -> None:
         raise AssertionError("plt.show() was called")

@@ -115,7 +115,7 @@ def test_the_camera_follows_only_after_three_turns(t_end: float, follows: bool) 
 def test_the_ground_has_ticks_where_the_body_is() -> None:
     animation = rl.animate(rl.simulate(rl.Scene(1.0, 1.0, omega=1e6), 9.0), fps=25, width=160)
     strip = only(animation)
-    for i in (0, 100, 200):  # about 4e6 m
+    for i in (0, 100, 200):
         animation.draw(i)
         (left, right), _ = view_of(animation)
         ticks = np.array([tick[0, 0] for tick in strip.ruler.ticks.get_segments()])
@@ -163,7 +163,7 @@ def test_a_panel_below_the_strips_follows_the_motion(report: rl.Trajectory, pane
         at = motion.at(4.0)
         assert omega == pytest.approx(at.omega) and abs(theta) <= math.pi / 2
         assert math.sin(2 * theta) == pytest.approx(math.sin(2 * at.theta), abs=1e-12)
-        assert np.nanmin(np.hypot(*(curve - [theta, omega]).T)) < 0.1  # on points of its curve
+        assert np.nanmin(np.hypot(*(curve - [theta, omega]).T)) < 0.1  # the mark is on its curve
 
 
 @pytest.mark.parametrize("scene", [rl.scenes.slope, rl.scenes.drop])
@@ -212,8 +212,8 @@ def test_a_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path
     for i, picture in enumerate(pictures):
         difference = np.abs(drawn - picture).mean(axis=(1, 2, 3))
         assert np.argmin(difference) == i
-        assert difference[i] < 2  # rounding of the palette, of 255
-    # the thin line itself, not its average
+        assert difference[i] < 2  # error of the palette, on a scale of 255
+    # the thin line has its own colour, not one averaged with the background
     orange = 255 * np.array(to_rgb(only(short).centre_trace.get_color()))
     assert np.abs(pictures[-1] - orange).max(axis=2).min() < 20
 
@@ -309,7 +309,7 @@ def test_a_film_is_as_long_as_its_motion(
 
     path, seconds = tmp_path / f"roll{suffix}", 0.48 / speed
     if (suffix, fps) == (".gif", 60):
-        return  # the format refuses it: times are hundredths of a second
+        return  # refused: a GIF stores times in hundredths of a second
     rl.animate(report, path, t_end=0.48, fps=fps, speed=speed, width=64, dpi=20)
     if suffix == ".html":
         data = carried(path.read_text(encoding="utf-8"))
@@ -318,7 +318,7 @@ def test_a_film_is_as_long_as_its_motion(
     if suffix == ".gif":
         found = sum(gif_frames(path.read_bytes())[1]) / 1000
     else:
-        count, found = imageio_ffmpeg.count_frames_and_secs(str(path))  # 2 digits
+        count, found = imageio_ffmpeg.count_frames_and_secs(str(path))  # seconds to 2 digits
         assert count == 1 + round(seconds * fps)
     # the last frame is shown for the duration of a frame, too
     assert found - seconds == pytest.approx(1 / fps, abs=1e-9 if suffix == ".gif" else 0.011)
@@ -344,11 +344,11 @@ LONG = {
 
 @pytest.mark.parametrize("name", LONG)
 def test_a_long_film_shows_unaltered_excerpts_of_the_motion(name: str) -> None:
-    """The film shows start, middle, end and events at the time on the clock, and does not seem to
-    roll backwards."""
+    """The excerpts include the start, the middle, the end and the events. Each frame shows the
+    motion at the time on its clock, and the body does not seem to roll backwards."""
     motion, places = LONG[name]
     film = rl.animate(motion, width=64)
-    strip, last, span = only(film), motion.t_end, 12 * film.speed  # of five parts of a minute
+    strip, last, span = only(film), motion.t_end, 12 * film.speed  # an excerpt lasts 12 s of film
     begins = np.flatnonzero(np.diff(film.pace.first, prepend=-1))
     assert film.t[begins] / (last - span) == pytest.approx(places, abs=0.01)
     assert film.speed <= 1 and film.t[-1] == pytest.approx(last, abs=film.speed / film.fps)
@@ -435,14 +435,16 @@ def test_only_a_window_system_opens_a_window(
     assert len(plt.get_fignums()) == windows
     assert plt.fignum_exists(animation.figure.number) if windows else True
     plt.close("all")
-    rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=64, dpi=20)  # a file opens no window
+    # writing a file opens no window
+    rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=64, dpi=20)
     with pytest.raises(ValueError, match="labels must be a sequence of 1 string, one"):
         rl.animate(report, labels=["one", "two"])
     assert plt.get_fignums() == []
 
 
 def test_a_page_leaves_no_garbage_to_collect(report: rl.Trajectory, tmp_path: Path) -> None:
-    """A written film has no reference cycles, because Ctrl-C is lost while cycles are collected."""
+    """A film written as a page has no reference cycles: a Ctrl-C that arrives while Python collects
+    cycles would be lost."""
     rl.animate(report, tmp_path / "roll.html")  # loads all modules
     gc.collect()
     gc.disable()

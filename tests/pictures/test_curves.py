@@ -71,7 +71,7 @@ def test_motions_differ_in_lightness_and_dashes(report: rl.Trajectory) -> None:
 
 
 def lightness(colour: str) -> float:
-    """Lightness CIE L* of a colour."""
+    """CIE lightness L* of a colour."""
     return float(116 * np.cbrt(luminance(colour)) - 16)
 
 
@@ -97,7 +97,7 @@ ROLLING = rl.simulate(rl.scenes.rolling, 1.0)
 
 
 def motions(*scenes: rl.Scene) -> list[rl.Trajectory]:
-    """Trajectories with these scenes, without integration: labels depend only on the request."""
+    """Trajectories with these scenes, but the samples of another motion; labels do not use them."""
     return [dataclasses.replace(ROLLING, scene=scene) for scene in scenes]
 
 

@@ -16,7 +16,7 @@ def points(chart: Any) -> tuple[Array, Array]:
     return data(chart.values)
 
 
-def test_a_line_has_the_ends_in_the_order_of_the_argument() -> None:
+def test_a_line_shows_the_ends_in_ascending_order_of_the_argument() -> None:
     omega = [5.0, 1.0, 3.0]
     last = rl.ends(BODY | {"omega": omega}, 1.0)
     chart = last.plot("x", ax=new_axes())
@@ -26,7 +26,7 @@ def test_a_line_has_the_ends_in_the_order_of_the_argument() -> None:
     assert labels == ("omega0 [rad/s]", "x [m]")
 
 
-def test_a_map_has_the_last_axis_across_and_its_colours_are_the_ends() -> None:
+def test_a_map_has_the_last_axis_horizontal_and_its_colours_show_the_ends() -> None:
     omega, friction = np.array([[1.0], [5.0]]), [0.9, 0.1, 0.5]
     last = rl.ends(BODY | {"omega": omega, "friction": friction}, 1.0)
     figure = Figure()
@@ -38,7 +38,7 @@ def test_a_map_has_the_last_axis_across_and_its_colours_are_the_ends() -> None:
 
 
 @pytest.mark.parametrize("quantity", ["first", "mode"])
-def test_codes_have_their_names_on_lines_and_maps(quantity: str) -> None:
+def test_lines_and_maps_label_codes_with_their_names(quantity: str) -> None:
     omega = np.array([1.0, 6.0])
     names = {"first": ["none", "slip"], "mode": ["rolling", "flight"]}[quantity]
     line = rl.ends(BODY | {"omega": omega, "friction": 0.5}, 0.2).plot(quantity, ax=new_axes())
@@ -50,7 +50,7 @@ def test_codes_have_their_names_on_lines_and_maps(quantity: str) -> None:
     assert [text.get_text() for text in figure.axes[1].get_yticklabels()] == names
 
 
-def test_infinite_friction_is_beside_the_largest_number() -> None:
+def test_infinite_friction_is_plotted_next_to_the_largest_finite_value() -> None:
     last = rl.ends(BODY | {"omega": 5.0, "friction": [np.inf, 0.5, 0.1]}, 1.0)
     chart = last.plot("x", ax=new_axes())
     assert [text.get_text() for text in chart.ax.get_xticklabels()] == ["0.1", "0.5", "inf"]
@@ -58,7 +58,7 @@ def test_infinite_friction_is_beside_the_largest_number() -> None:
 
 
 def test_a_motion_that_ended_early_has_no_dot(tmp_path: Path) -> None:
-    """The scenes of a list are numbered on the axis."""
+    """A list of scenes is plotted over the number of the scene."""
     jam = rl.Scene(2.0, 0.2, theta=-1.2, x_dot=-3.0, omega=0.0, friction=1.5)
     last = rl.ends([rl.scenes.report, jam], 2.0)
     chart = last.plot("z", tmp_path / "z.png")

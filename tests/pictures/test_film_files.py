@@ -1,4 +1,4 @@
-"""A picture or film that fails leaves no file behind; films have any valid name and writer."""
+"""Failed pictures and films leave no files or figures behind; any valid file name works."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -100,7 +100,7 @@ def test_a_body_too_far_away_to_be_seen_is_rejected(draw: Any) -> None:
 
 
 class Place:
-    """An os.PathLike that is no pathlib.Path."""
+    """An os.PathLike that is not a pathlib.Path."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -109,7 +109,7 @@ class Place:
         return str(self.path)
 
 
-def test_all_that_write_files_take_text_and_any_path(tmp_path: Path) -> None:
+def test_all_file_writers_accept_strings_and_path_likes(tmp_path: Path) -> None:
     motion = rl.simulate(rl.scenes.report, np.linspace(0.1, 1.0, 12))
     scores = rl.benchmark.run(lambda p, t, s: p.exact(t), problems="roll.rock", ladder=[1.0])
     fit = rl.fit_motion(motion.t, motion.x, scene=motion.scene, free=("theta",), sigma=1e-3)

@@ -35,7 +35,8 @@ MOTIONS: dict[str, rl.Trajectory] = {
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 def test_curves_of_motions_with_three_samples_follow_the_motion(motion: rl.Trajectory) -> None:
-    """Between its points a curve deviates from the motion by at most the width of a line, 0.3 %."""
+    """Between its points a curve deviates from the motion by at most 0.3 % of its range, about the
+    width of a line."""
     shown = rl.plot(motion, figure=Figure())
     for line, name in (
         (shown.theta, "theta"), (shown.omega, "omega"), (shown.height, "z"),
@@ -91,7 +92,7 @@ def inches(ax: Any, axis: int) -> float:
 
 
 def test_the_path_and_the_forces_of_1000_turns_are_not_straight_lines() -> None:
-    """The samples of the trajectory, at whole turns, are all equal."""
+    """The samples of the trajectory lie at whole turns, so their heights are all equal."""
     assert np.ptp(ROLLING.z) < 1e-6
     x, z = data(rl.plot_paths(ROLLING, ax=new_axes()).centres[0])
     assert (z.min(), z.max()) == pytest.approx((1.0, 2.0), abs=1e-4) and x.max() < 35
@@ -164,8 +165,9 @@ def test_overlapping_bodies_do_not_add_up_to_an_opaque_blot() -> None:
     assert np.all(pile(rl.plot_strobe(MOTIONS["report"], ax=new_axes())) > 0.09)
 
 
-def test_errors_from_rounding_the_angle_lie_below_the_line_for_this_rounding() -> None:
-    """Two roundings are allowed, because psi is a sum of two angles; the energy changes less."""
+def test_errors_from_rounding_the_angle_are_below_twice_the_line_for_it() -> None:
+    """Twice the rounding is allowed, because psi is the sum of two angles. The energy changes
+    less."""
     later = rl.plot(ROLLING.sol(np.linspace(50.0, ROLLING.t_end, 99)), figure=Figure())
     panel = figure_of(later.ax).axes[-1]
     (limit,) = (line for line in panel.lines if line.get_label() == "rounding of θ")

@@ -27,7 +27,7 @@ SCENES = {
     "backwards": rl.Scene(2.0, 1.0, omega=-5.2, friction=1.0),
     "settling": rl.Scene(2.0, 1.0, z=1.5, restitution=0.5, friction=0.5),  # many impacts, rest
 }
-COUNTED = {SCENES["bounce"]: ["10 impacts"], SCENES["settling"]: ["21 events"]}  # of 6 s
+COUNTED = {SCENES["bounce"]: ["10 impacts"], SCENES["settling"]: ["21 events"]}  # in 6 s
 NAMES = {rl.Mode.SLIDING: "sliding", rl.Mode.FLIGHT: "flight", rl.Mode.REST: "rest"}
 
 
@@ -95,7 +95,7 @@ def test_modes_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
     pictures = [rl.plot_energy(motion, ax=new_axes()) for motion in (jump, settling)]
     shades = [shade for shown in pictures for shade in shades_of(shown.marks)]
     hatches = {shade.get_hatch() for shade in shades}
-    assert len(shades) == 4 and len(hatches) == 3  # two flights
+    assert len(shades) == 4 and len(hatches) == 3  # both have flight
     for shade in shades:
         red, green, blue = to_rgb(shade.get_facecolor()[0])
         assert red == green == blue > 0.85  # a pale grey
@@ -177,7 +177,7 @@ def test_forces_are_zero_in_flight_and_at_their_limit_in_slides(motion: rl.Traje
     left = sum(event.kind is rl.EventKind.LIFT_OFF for event in motion.events)
     assert np.count_nonzero(normal[~flying] == 0) <= left  # samples at lift-off
     limit = motion.scene.friction * normal[sliding]
-    assert np.abs(friction[sliding]) == pytest.approx(limit, rel=1e-14)  # a product and a quotient
+    assert np.abs(friction[sliding]) == pytest.approx(limit, rel=1e-14)  # rounding
     assert shown.axes[0].get_ylim()[1] > 0
 
 
@@ -192,7 +192,7 @@ def test_constraints_are_shown_only_where_the_ground_enforces_them(motion: rl.Tr
         assert np.array_equal(np.isnan(values[name]), flying | sliding)
     for name in ("f3", "f4", "df3/dt", "df4/dt"):
         assert np.all(np.isfinite(values[name]))
-    # constraints hold to within a hundred roundings
+    # the constraints hold to within some hundreds of roundings
     assert max(float(np.nanmax(value, initial=0.0)) for value in values.values()) < 1e-13
 
 
@@ -202,14 +202,14 @@ def test_energy_lost_to_the_ground_does_not_count_as_an_error(motion: rl.Traject
     error, slides = data(line)[1], seen(motion, line).mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(error), slides & (motion.scene.friction > 0))
     assert np.nanmax(error, initial=0.0) < 32 * EPS
-    if motion.scene != SCENES["bounce"]:  # which is elastic
+    if motion.scene != SCENES["bounce"]:  # its impacts are elastic
         assert motion.energy[0] - motion.energy[-1] > 1e-3 * motion.energy[0]
 
 
 def test_a_loss_in_elastic_impacts_counts_as_an_error() -> None:
     dull = rl.simulate(SCENES["bounce"].replace(friction=0.0, restitution=0.9), 6.0)
     elastic = dataclasses.replace(dull, scene=dull.scene.replace(restitution=1.0))
-    for motion, least, most in ((dull, 0.0, 32 * EPS), (elastic, 0.19, 1.0)):  # 1 - 0.9^2 at once
+    for motion, least, most in ((dull, 0.0, 32 * EPS), (elastic, 0.19, 1.0)):  # 1 - 0.9^2 = 0.19
         (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
         assert least <= np.max(data(line)[1]) <= most
 
@@ -321,7 +321,7 @@ def test_every_frame_shows_the_mode_of_the_body(motion: rl.Trajectory) -> None:
             assert slipping == pytest.approx(contact)
             assert strip.slip.get_marker() == (">" if slip[i] > 0 else "<")
         shadow = data(strip.shadow)[0]
-        if flies:  # width of the body: 4000 points miss its ends by 1e-6 of its size
+        if flies:  # as wide as the body, whose ends 4000 points miss by 1e-6 of its size
             ends = [points[:, 0].min(), points[:, 0].max()]
             assert shadow == pytest.approx(ends, abs=4e-6)
         assert len(shadow) == (2 if flies else 0)
@@ -334,7 +334,7 @@ def test_every_frame_shows_the_mode_of_the_body(motion: rl.Trajectory) -> None:
 def test_the_slip_mark_lies_along_the_slope() -> None:
     sliding = rl.simulate(rl.Scene(2.0, 1.0, slope=0.5, x_dot=4.0, omega=0.0, friction=0.2), 0.1)
     (strip,) = rl.animate(sliding).strips
-    # matplotlib gives no public access to its shape
+    # matplotlib gives no public access to the shape of a marker
     marker = strip.slip._marker  # type: ignore[attr-defined]
     head, *base = marker.get_transform().transform(marker.get_path().vertices[:3])
     pointing = head - np.mean(base, axis=0)
@@ -353,8 +353,8 @@ def test_contact_slip_and_flight_can_be_told_apart_in_grey(jump: rl.Trajectory) 
 
 
 def test_losses_are_split_into_rolling_sliding_and_impacts() -> None:
-    """The three losses add up to the whole loss. The loss in impacts is that of the events, and
-    without a lever no energy is lost in rolling."""
+    """The three losses add up to the total loss. The loss in impacts is the sum over the events,
+    and without rolling resistance no energy is lost in rolling."""
     falls = rl.Scene(
         2.0, 1.0, theta=0.5, z=3.0, omega=2.0, x_dot=1.5, friction=0.25, restitution=0.5,
         rolling_resistance=0.04,

@@ -1,4 +1,4 @@
-"""The phase map, read back from its artists: colours, lines, names, axes, refusals."""
+"""The phase map, read back from its artists: colours, lines, names and axes."""
 
 import itertools
 import math
@@ -91,7 +91,9 @@ def test_cells_agree_with_classify_at_their_centres(x: str, y: str, swapped: boo
         ({"y": "friction", "energy": 1.0, "x_range": (1.1, 1.3), "y_range": (1, 2)}, ["edge"]),
     ],
 )
-def test_the_legend_names_only_what_occurs(options: dict[str, Any], expected: list[str]) -> None:
+def test_the_legend_names_only_outcomes_on_the_map(
+    options: dict[str, Any], expected: list[str]
+) -> None:
     shown = phase_map(**options)
     assert legend_of(shown.ax) == expected
     present = [rl.Outcome(code) for code in np.unique(codes_of(shown))]
@@ -105,7 +107,7 @@ def test_regions_can_be_told_apart_in_grey() -> None:
     regions = [o for o in rl.Outcome if o not in (rl.Outcome.RESTS, rl.Outcome.EDGE)]
     colours = [to_rgb(colour_of(shown, outcome)) for outcome in regions]
     greys = sorted(0.299 * r + 0.587 * g + 0.114 * b for r, g, b in colours)
-    reached = [grey for grey in greys if grey > 0.3]  # without JAMS, which no cell reaches
+    reached = [grey for grey in greys if grey > 0.3]  # without JAMS, which no cell has
     assert len(reached) == 4 and np.min(np.diff(reached)) > 1 / 6
 
 
@@ -147,7 +149,7 @@ def test_curves_over_the_aspect_agree_with_thresholds() -> None:
     assert constant(at(shown, "separatrix")[1]) == 1
     contact, flight = at(shown, "contact loss"), at(shown, "lift-off")
     for i in range(3, contact[0].size, 9):
-        found = rl.thresholds(3 * contact[0][i], 3.0, gravity=1.6, friction=0.5)  # scale changed
+        found = rl.thresholds(3 * contact[0][i], 3.0, gravity=1.6, friction=0.5)  # another size
         for marked, speed in ((contact, found.contact_loss_speed), (flight, found.lift_off_speed)):
             energy = (known(speed) / found.roll_over_speed) ** 2
             assert marked[1][i] == pytest.approx(energy, rel=1e-9)
@@ -180,7 +182,7 @@ def test_colours_change_at_the_lines() -> None:
     assert np.mean(near) < 0.05 and np.array_equal(codes[~near], expected[~near])
 
 
-def test_only_what_is_in_view_is_marked() -> None:
+def test_only_thresholds_in_view_are_marked() -> None:
     assert set(phase_map(x_range=(2, 9)).marks) == LEVEL_MARKS
     assert set(phase_map(x_range=(9.1, 9.2), y_range=(0, 0.9)).marks) == set()
     assert "last to roll over" not in phase_map(x_range=(9.76, 20)).marks

@@ -1,4 +1,4 @@
-"""The pictures of motions one by one, read back from their artists."""
+"""Each picture of motions, read back from its artists."""
 
 import dataclasses
 import itertools
@@ -18,7 +18,7 @@ from rolling_ellipse._pictures import ground as drawing
 from rolling_ellipse._pictures import sampling
 
 own_samples = pytest.mark.filterwarnings("ignore:the samples of a trajectory are not those")
-OVER_TIME: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {  # curves by their data
+OVER_TIME: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {  # quantity of each curve
     "forces": (
         lambda motion: rl.plot_forces(motion, ax=two_axes()),
         {"normal": "normal_force", "friction": "friction_force", "needed": "friction_needed"},
@@ -62,14 +62,14 @@ def test_each_quantity_has_a_panel_with_all_motions(several: list[rl.Trajectory]
             assert np.array_equal(data(line)[1], getattr(seen(motion, line), name))
 
 
-def test_lengths_of_a_small_body_have_figures_in_its_unit() -> None:
+def test_lengths_of_a_small_body_are_labelled_in_its_unit() -> None:
     coin = rl.simulate(rl.Scene(0.012, 0.01, omega=9.0), 1.0)
     ax = rl.plot_curves(coin, "contact_x", ax=new_axes()).ax
     assert ax.get_ylabel() == "contact [mm]" and ax.yaxis.get_major_formatter()(0.01, 0) == "10"
 
 
 def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
-    """The motion with residuals of the given sizes in f1 ... f4, df2 ... df4, gap, slip."""
+    """The motion, whose residuals f1 ... f4, df2 ... df4, gap and slip have the given errors."""
     found = motion.constraint_residuals()
     position, velocity = found.position.copy(), found.velocity.copy()
     gap, slip = found.gap.copy(), found.slip.copy()
@@ -85,7 +85,7 @@ def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
 
 
 def test_rounding_errors_are_small_on_their_axis(report: rl.Trajectory) -> None:
-    """The axis ends at ten times 1e-13, which is some hundred roundings."""
+    """The axis ends at 1e-12, ten times some hundreds of roundings."""
     (ax,) = rl.plot_energy(report, ax=new_axes(), kind="error").axes
     assert ax.get_ylim() == pytest.approx((1e-17, 1e-12))
 
@@ -130,7 +130,7 @@ def test_several_motions_show_the_errors_in_their_energies(several: list[rl.Traj
     assert shown.total == shown.kinetic == shown.potential == ()
     assert shown.ax.get_yscale() == "log"
     for line, motion in zip(shown.error, several, strict=True):
-        # both energies are >= 0 on level ground from z = 0, so the energy itself is the scale
+        # on level ground both energies, counted from z = 0, are >= 0, so their sum is the scale
         energy = seen(motion, line).energy
         expected = np.abs(energy - energy[0]) / energy.max()
         assert data(line)[1] == pytest.approx(expected, rel=1e-12, abs=1e-15)
@@ -273,7 +273,7 @@ def test_the_separatrix_keeps_the_spike_of_a_thin_body() -> None:
     _, omega = data(shown.separatrices[0])
     peak = rl.thresholds(1.0, 1e-3).roll_over_speed
     assert omega.max() == pytest.approx(peak, rel=1e-12)
-    # |d omega| <= peak per point of the curve: a tenth of the peak is no visible corner
+    # steps of omega below a tenth of the peak leave no visible corner
     assert np.max(np.abs(np.diff(omega))) < 0.1 * peak
 
 
@@ -340,7 +340,8 @@ def test_strobe_bodies_touch_the_ground_at_equally_spaced_times(trajectory: rl.T
         assert centre_of(body) == (at.x[i], at.z[i])
         assert (body.width, body.height) == (2 * trajectory.scene.a, 2 * trajectory.scene.b)
         lowest_x, lowest_z = support(body)
-        # in degrees, 100 rad are exact to 1e-14 rad, times rho or size; x is at most 10 m
+        # angles up to 100 rad, in degrees, are exact to 1e-14 rad; this moves the lowest point by
+        # up to size or rho times as much, and x adds its own rounding
         assert abs(lowest_z) <= 1e-12 * size
         rho = (trajectory.scene.a * trajectory.scene.b) ** 2 / at.z[i] ** 3
         assert abs(lowest_x - contact_x[i]) <= 1e-13 * (size + rho + abs(at.x[i]))
@@ -367,7 +368,7 @@ def test_the_strobe_stops_a_long_roll_after_three_turns() -> None:
     trajectory = rl.simulate(rl.scenes.rolling, np.linspace(0.0, 1000.0, 100_001))
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     turned = math.radians(shown.bodies[0].angle - shown.bodies[-1].angle) / (2 * math.pi)
-    # samples 0.01 s apart at <= 3.2 rad/s, interpolated: 2nd order errs by 1e-4 turns
+    # the end is interpolated between samples 0.01 s apart, to within some 1e-4 turns
     assert turned == pytest.approx(3.0, abs=1e-3)
     assert "the first 13.1 s of 1000 s" in shown.ax.get_title(loc="left")
 
@@ -388,7 +389,7 @@ def test_the_strobe_draws_bodies_dotted_where_the_model_is_invalid(report: rl.Tr
     assert styles == ["-"] * 6 + [":"] * 7
 
 
-def test_the_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajectory) -> None:
+def test_the_strobe_view_contains_every_body_at_equal_scales(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     figure_of(shown.ax).draw_without_rendering()
     (left, right), (bottom, top) = shown.ax.get_xlim(), shown.ax.get_ylim()
@@ -414,7 +415,7 @@ def test_overview_errors_equal_those_of_the_single_pictures(trajectory: rl.Traje
 def test_the_overview_labels_every_axis_with_its_unit(report: rl.Trajectory) -> None:
     figure = rl.plot(report, figure=Figure(layout="constrained")).figure
     labels = [ax.get_ylabel() for ax in figure.axes]
-    assert len(set(labels)) == len(figure.axes) - 1 == 7  # omega over theta and over time
+    assert len(set(labels)) == len(figure.axes) - 1 == 7  # omega has two panels
     lowest = [ax.get_xlabel() for ax in figure.axes if ax.get_xlabel()]
     assert sorted(lowest) == ["t [s]", "t [s]", "x [m]", "θ [rad]"]
     labels.remove("relative error")

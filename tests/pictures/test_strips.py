@@ -1,4 +1,4 @@
-"""Several motions in one moving picture, read back from its artists."""
+"""Several motions in one animation, read back from its artists."""
 
 import math
 import warnings
@@ -148,7 +148,7 @@ def test_texts_overlap_neither_texts_nor_bodies(motions: list[rl.Trajectory], wi
             text, box = strip.caption.get_window_extent(), strip.ax.get_window_extent()
             assert text.x0 > 0 and text.x1 < box.x1 and text.y1 < box.y1
             assert text.y0 > strip.ax.transData.transform(outline(strip.body))[:, 1].max()
-            for figure in filter(Text.get_visible, strip.ruler.labels):  # none is cut
+            for figure in filter(Text.get_visible, strip.ruler.labels):  # not cut off
                 cell = figure.get_window_extent()
                 assert cell.y0 > box.y0 and box.x0 <= cell.x0 and cell.x1 <= box.x1
 

@@ -34,7 +34,9 @@ def contrast(one: Any, other: Any) -> float:
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_curves_stand_out(picture: Any, several: list[rl.Trajectory], style: str) -> None:
+def test_curves_differ_from_the_background(
+    picture: Any, several: list[rl.Trajectory], style: str
+) -> None:
     with plt.style.context(style):
         ax = new_axes()
         picture(several, ax=ax)

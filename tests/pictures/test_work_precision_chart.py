@@ -42,7 +42,7 @@ def made(count: int, best: float = 1e-13, kind: str = "ladders") -> WorkPrecisio
             [10.0**-k for k in range(-2, 16) if 10.0**-k > best] if kind == "ladders" else [1e-5]
         )
         for error in errors:
-            # each method's steps grow as error^(-1/order), with a fixed cost of 10 units
+            # the number of steps is error^(-1/order); a fixed cost of 10 units is added
             runs.append(run(name, error, unit * (10 + error ** (-1 / order))))
     reference = Reference("made", 2.0, 0.0, LIMIT if best < LIMIT else 3 * best)
     return WorkPrecision(Scene(2.0, 1.0, omega=3.2), tuple(runs), (reference,), {"rounds": "9"})
@@ -174,7 +174,7 @@ def test_the_table_of_gaps_is_drawn_below_where_there_is_room() -> None:
     assert LACKING.plot(ax=Figure().add_subplot()).below is None
 
 
-def test_a_chart_without_any_result_still_says_why() -> None:
+def test_a_chart_without_any_result_still_names_every_failure() -> None:
     runs = tuple(replace(each, **LOST, reason="too many") for each in FOUND.runs)
     chart: Any = replace(FOUND, runs=runs).plot(ax=Figure().add_subplot())
     assert not chart.lines and {gap.name for gap in chart.gaps} == set(FOUND.names)

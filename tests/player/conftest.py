@@ -77,7 +77,7 @@ def opened(blank: Callable[..., Any], tmp_path: Path) -> Iterator[Callable[..., 
 
     yield show
     for page, listeners in used:
-        page.goto("about:blank")  # nothing plays there
+        page.goto("about:blank")  # stops the player
         for event, listener in listeners.items():
             page.remove_listener(event, listener)
     assert complaints == []

@@ -88,8 +88,8 @@ def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
         if None not in ends:
             offsets.append((ends[0] - ends[1]) / 2)  # type: ignore[operator]
             directions.append(way)
-    # an offset is about the component of the centre's offset along its direction: least squares
-    # without the worst tenth
+    # each offset is about the component of the centre's offset along its direction; solve by least
+    # squares, and leave out the worst tenth
     offsets_, ways = np.array(offsets), np.array(directions)
     for _ in range(3):
         shift, *_ = np.linalg.lstsq(ways, offsets_, rcond=None)
@@ -298,7 +298,7 @@ def drag(page: Page, by: tuple[float, float], steps: int) -> None:
 
 @pytest.mark.parametrize("name", ["report", "slope", "drop", "jump"])
 def test_a_drag_moves_the_blow_and_shows_its_effect(opened: Opened, name: str) -> None:
-    """Positions, turns and forces are drawn within a pixel; a plot has 540 by 168 pixels."""
+    """Positions, turns and forces are drawn to within a pixel; a plot has 540 by 168 pixels."""
     scene = SCENES[name]
     explorer = rl.explore(scene)
     page = opened(document("", explorer._repr_html_()), reduced_motion="reduce")
@@ -327,8 +327,8 @@ def test_a_drag_moves_the_blow_and_shows_its_effect(opened: Opened, name: str) -
         assert over.max() * 168 / np.ptp([-0.5, 1.5, *true]) < 1
 
 
-def test_in_a_wide_cell_map_and_curves_are_beside_the_film(opened: Opened) -> None:
-    """The whole is no taller than a cell of marimo, 610 pixels; the hand is where it is seen."""
+def test_in_a_wide_cell_the_map_and_the_curves_are_beside_the_film(opened: Opened) -> None:
+    """The explorer is no taller than a cell of marimo, 610 pixels, and its hand can be dragged."""
     fragment = rl.explore(rl.scenes.report, t_end=1.0)._repr_html_()
     size = {"width": 1132, "height": 800}  # 1100 without the margins of the page
     page = opened(document("", fragment), viewport=size, reduced_motion="reduce")
@@ -375,7 +375,7 @@ def test_a_body_with_rolling_resistance_has_no_map_of_outcomes(opened: Opened) -
 
 
 @pytest.mark.parametrize(
-    ("part", "keys", "parts"),  # of the sliders, 240 of each
+    ("part", "keys", "parts"),  # positions of both sliders in 240ths
     [
         (".where", "ArrowRight ArrowUp ArrowLeft", (211, 107)), (".where", "Home", (0, 107)),
         (".where", "End", (240, 107)), (".where", "PageDown", (186, 107)),

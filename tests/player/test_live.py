@@ -1,4 +1,4 @@
-"""The WebAssembly core equals the extension, in node and in a browser; pages that use the core."""
+"""The WebAssembly core agrees with the extension, in node and in the pages that use it."""
 
 import gzip
 import json
@@ -44,7 +44,7 @@ console.log(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map(({ scene, tim
 
 
 def in_node(motions: list[rl.Trajectory], folder: Path) -> list[dict[str, Any]]:
-    """What the WebAssembly core answers for the scenes, blows and times of some motions."""
+    """Answers of the WebAssembly core for the scenes, blows and times of the motions."""
     if NODE is None:
         pytest.skip("there is no node (apt-get install nodejs)")
     (folder / "core.mjs").write_text(packaged("core.js") + DRIVER, encoding="utf-8")
@@ -78,7 +78,7 @@ def require_equal(motion: rl.Trajectory, found: dict[str, Any]) -> None:
 def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
     tmp_path: Path,
 ) -> None:
-    """Bounds allow roundings of another C library, magnified by the bounces of a short motion."""
+    """The bounds allow for roundings of another C library, magnified by a few bounces."""
     how, times = replace(DEFAULTS, max_steps=20_000, max_events=200), np.linspace(0.0, 1.5, 31)
     scenes = [*random_scenes(220, 35), *random_scenes(60, 36, struck=1.0)]
     scenes += [
@@ -109,7 +109,7 @@ def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
 
 def test_webassembly_gives_blows_during_200_motions_as_python_does(tmp_path: Path) -> None:
     """Every other body is struck just after its first event, which roundings of another C library
-    may delay; the text is about the last blow.
+    may delay. The sentences describe the motion after the last blow.
     """
     how = replace(DEFAULTS, model="contact", max_steps=20_000, max_events=200)
     end, rng, motions, struck = 1.5, np.random.default_rng(39), [], []
@@ -159,7 +159,7 @@ def test_the_wasm_file_is_small_and_matches_its_script(tmp_path: Path) -> None:
 
 
 def repeated(page: Any) -> float:
-    """Largest relative difference at the end between the page's motion and that of its code."""
+    """Largest relative difference at the end between a page's motion and that of its code."""
     ends = f"Object.entries({PLAYER}.columns).map(([name, values]) => [name, values.at(-1)])"
     made: dict[str, Any] = {}
     exec(page.evaluate(f"{PLAYER}.code()"), made)
@@ -232,7 +232,7 @@ def test_sliders_change_the_motion_and_code_and_link_reproduce_it(opened: Opened
     assert "b must be a positive" in page.locator(".refused").inner_text()
 
 
-def test_a_link_of_a_page_without_rolling_resistance_opens_its_scene(opened: Opened) -> None:
+def test_a_link_from_before_rolling_resistance_opens_its_scene(opened: Opened) -> None:
     write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
     page = opened(write(rl.explore(rl.scenes.report)), reduced_motion="reduce")
     link = (TESTS / "export" / "old_files" / "link.txt").read_text(encoding="utf-8").strip()

@@ -1,4 +1,4 @@
-"""The page of a sheet marks as Python does, prints, and needs no network."""
+"""The page of an exercise sheet gives the same marks as Python and needs no network."""
 
 import math
 import random
@@ -24,7 +24,7 @@ MARKS = """answers => answers.map(([task, text]) => {
 
 @pytest.mark.parametrize("number", [3, 7, 8])
 def test_the_browser_gives_the_marks_of_python(number: int, opened: Callable[..., Any]) -> None:
-    """The hundred answers are close to the ends of the intervals of marks, or are not numbers."""
+    """The answers are random, close to the ends of the intervals of marks, or not numbers."""
     html = course.sheet(number, seed=SEED).html
     assert "http" not in html.replace("http://www.w3.org", "")
     page = opened(html)

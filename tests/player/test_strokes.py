@@ -116,7 +116,7 @@ def simulated(page: Any, scene: rl.Scene) -> rl.Trajectory:
 
 
 def copied(page: Any) -> rl.Trajectory:
-    """The motion of the page's Python code."""
+    """The motion that the page's Python code computes."""
     made: dict[str, Any] = {}
     exec(page.evaluate(f"{PLAYER}.code()"), made)
     motion: rl.Trajectory = made["motion" if "motion" in made else "trajectory"]
@@ -147,11 +147,11 @@ def test_two_strokes_are_one_motion_of_simulate(
     assert page.locator(".mark[title='blow at 0.4000 s']").count() == 1
 
 
-def test_a_press_on_the_playing_body_strikes_it_and_the_clock_goes_on(opened: Opened) -> None:
+def test_a_press_on_the_playing_body_strikes_it_and_playback_continues(opened: Opened) -> None:
     page = explored(opened, reduced_motion="no-preference")
     page.evaluate(f"{PLAYER}.play()")
     page.wait_for_function(f"{PLAYER}.now > 0.6")
-    x, y = place(page, "body")  # the body moves on before the press, but less than its width
+    x, y = place(page, "body")  # before the press the body moves by less than its width
     page.mouse.move(x, y)
     page.mouse.down()
     pressed = page.evaluate(f"{PLAYER}.now")
@@ -197,7 +197,7 @@ def test_undo_returns_to_the_first_blow(opened: Opened) -> None:
     assert undo.get_attribute("aria-disabled") == "true"
 
 
-def test_a_pointer_moves_no_other_blow_after_an_undo_or_a_change_of_the_scene(
+def test_a_drag_moves_no_blow_after_an_undo_or_a_change_of_the_scene(
     opened: Opened,
 ) -> None:
     page = live(opened)
@@ -228,7 +228,7 @@ def test_twenty_strokes_are_one_motion_of_simulate(opened: Opened) -> None:
     assert deviation(page, motion) < 1e-10
 
 
-def test_nothing_strikes_after_the_end_of_a_motion(opened: Opened) -> None:
+def test_a_click_after_the_end_of_a_motion_does_not_strike(opened: Opened) -> None:
     page = explored(opened)
     seek(page, 5.4)
     x, y = place(page, "body")
@@ -284,7 +284,7 @@ def test_strokes_work_in_a_sandboxed_frame(opened: Opened) -> None:
 
 
 def test_the_link_of_the_live_page_has_its_blows(opened: Opened) -> None:
-    """A change of the body keeps the blows, and so do another language and a reload."""
+    """The blows remain after a change of the body, a change of the language and a reload."""
     page = live(opened)
     strike(page, 1.0)
     page.evaluate(f"{PLAYER}.change({{ jx: 5, jz: -30, dx: 0.5, dz: 0.25 }})")
@@ -314,7 +314,7 @@ def test_the_link_of_the_live_page_has_its_blows(opened: Opened) -> None:
 @pytest.mark.parametrize(
     "text", ["x", "1,2,3", "2,0,-5,0,0,1,0,-5,0,0", "1,0,-5,99,0", "1,0,up,0,0", "99,0,-5,0,0"]
 )
-def test_a_link_with_blows_that_cannot_be_opens_the_page_without_them(
+def test_a_link_with_impossible_blows_opens_the_page_without_them(
     opened: Opened, text: str
 ) -> None:
     page = live(opened)
@@ -324,13 +324,13 @@ def test_a_link_with_blows_that_cannot_be_opens_the_page_without_them(
     assert times(page) == [0] and not page.evaluate(f"{PLAYER}.refusal")
 
 
-def test_a_stroke_on_the_live_page_meets_the_body_with_a_force(opened: Opened) -> None:
+def test_a_stroke_on_the_live_page_hits_the_body_with_a_force(opened: Opened) -> None:
     page = live(opened)
     half = page.evaluate(f"{PLAYER}.film.strongest") / 2
     upright = simulated(page, rl.scenes.report).when(theta=math.pi / 2)[0]
     strike(page, upright)
     assert not page.evaluate(f"{PLAYER}.refusal")
-    assert blows(page)[1][1].dx == pytest.approx(0.99, rel=1e-2)  # b = 1, and the first has 1.5
+    assert blows(page)[1][1].dx == pytest.approx(0.99, rel=1e-2)  # b = 1; the first blow is at 1.5
     rolls = rl.Scene(2.0, 1.0, omega=3.0)
     page.evaluate("(link) => { location.hash = link; }", rolls.to_link(t=2.0))
     page.wait_for_function(f"{PLAYER}.film.end === 2 && !{PLAYER}.stale")

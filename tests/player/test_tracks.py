@@ -33,7 +33,7 @@ def unpacked(column: dict[str, Any]) -> np.ndarray:
 
 
 def read_back(found: dict[str, Any], times: np.ndarray) -> dict[str, np.ndarray]:
-    """Hermite cubics at some times, by their divided differences."""
+    """Hermite cubics evaluated at the given times from divided differences."""
     known = {name: unpacked(column) for name, column in found["columns"].items()}
     t, values = known["t"], {}
     i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, t.size - 2)
@@ -55,7 +55,7 @@ def test_the_motion_between_samples_stays_within_its_tolerance(name: str) -> Non
     tolerance = 2e-3 * size
     found = track(motion, [(0.0, end)], tolerance)
     times = np.random.default_rng(1).uniform(0.0, end, 4000)
-    # the time of an impact is rounded like t, so no bound holds that close to an impact
+    # the time of an impact is rounded like any t, so times this close to an impact are left out
     near = 4 * tolerance / max(1e-9, float(np.max(np.hypot(motion.x_dot, motion.z_dot))))
     for event in motion.events:
         times = times[np.abs(times - event.t) > near]
@@ -118,7 +118,7 @@ def test_packing_uses_no_more_bytes_than_needed() -> None:
     assert sizes == [268, 536, 1068]  # two, four and eight bytes a value, times 4/3 for base64
 
 
-def test_forces_that_are_not_finite_are_rejected() -> None:
+def test_samples_that_are_not_finite_are_rejected() -> None:
     with pytest.raises(ValueError, match="trajectory must have finite samples"):
         packed(np.array([0.0, np.nan]), 1.0)
 

@@ -1,8 +1,9 @@
 """Code lines of the core and of the package stay within a budget; `pytest -rP` shows the lines of
 each room.
 
-A code line is not blank, and neither comment nor docstring. A change that needs a larger budget
-says in its commit what it replaces; a change that shrinks the code lowers the budget here.
+A code line is not blank and is part of neither a comment nor a docstring. The commit of a change
+that needs a larger budget states what the change replaces; a change that shrinks the code lowers
+the budget here.
 """
 
 import ast

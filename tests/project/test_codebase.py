@@ -30,7 +30,7 @@ GENERATED = {
 PYTHON_FOLDERS = ("python", "tests", "tools", "docs", "benchmarks", "reference")
 BINDINGS = ROOT / "src" / "bindings"
 CORE = [path for path in SOURCES if path.parent != BINDINGS]
-# Folders in the order of the data: a folder includes only itself and earlier ones; "" is src.
+# Folders in the order of dependence: a folder includes only itself and earlier ones; "" is src.
 FOLDERS = (
     "numerics", "integrator", "geometry", "scene", "rolling/level", "rolling/slope",
     "rolling/stepped", "proof", "multipliers", "contact", "outcome", "", "bindings",
@@ -65,15 +65,15 @@ def run(*command: str | Path) -> str:
     return done.stdout
 
 
-SCRIPTS = Path(sysconfig.get_path("scripts"))  # folder of the programs of the test extra
+SCRIPTS = Path(sysconfig.get_path("scripts"))  # folder with the programs of the test extra
 
 
 # -------------------------------------------------------------------------------- tools
 
 
 RUFF = [sys.executable, "-m", "ruff"]
-# Checks: only the Python folders: newer versions of `ruff format` also format code in Markdown,
-# where comments are aligned.
+# Only the Python folders are checked for their format: newer versions of `ruff format` also format
+# code in Markdown, where comments are aligned.
 CHECKS: dict[str, tuple[list[str | Path], list[str | Path], str, str]] = {
     "ruff": ([*RUFF, "check", "--no-cache"], ["."], "unused.py", "import os\n"),
     "ruff format": (
@@ -285,7 +285,7 @@ def test_each_room_imports_only_those_before_it() -> None:
             is_slow = late and ROOMS[room_of(other)] == SLOW
             assert is_slow or room_of(other) <= room_of(name), f"{name} imports {other}"
             between += room_of(other) < room_of(name)
-    assert between > 200  # fewer: the search no longer recognises imports
+    assert between > 200  # fewer if the search no longer recognises imports
 
 
 def test_the_architecture_page_names_every_room() -> None:
@@ -295,7 +295,7 @@ def test_the_architecture_page_names_every_room() -> None:
 
 
 def test_no_files_import_each_other_circularly() -> None:
-    """Neither imports at load time nor those in functions form a circle; those for type checkers
+    """Neither imports at load time nor imports in functions form a cycle. Imports for type checkers
     may."""
     graph = {
         path.relative_to(PACKAGE).as_posix(): {other for other, _ in imported(path)}
@@ -348,8 +348,8 @@ def test_the_compiler_fuses_only_what_is_written_as_fused(
 
 
 def test_the_compiler_fuses_nothing_in_vectorized_sources(fused: Callable[..., list[str]]) -> None:
-    """The compiler could fuse packed numbers; operations that are also fused without vectors are
-    fused in the source."""
+    """A compiler that vectorizes could fuse operations on packed numbers. Operations that are fused
+    without vectorization as well are fused in the source."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     properties = r"set_source_files_properties\(([^)]*)PROPERTIES [^)]*COMPILE_OPTIONS (-f\S+)\)"
     vectorized = [(name, flag) for names, flag in re.findall(properties, build)

@@ -65,7 +65,7 @@ def command(capsys: pytest.CaptureFixture[str], monkeypatch: Any, tmp_path: Path
     def run(*arguments: str) -> Answer:
         try:
             code = main(list(arguments))
-        except SystemExit as stopped:  # argparse ends by SystemExit
+        except SystemExit as stopped:  # argparse raises SystemExit
             code = int(stopped.code or 0)
         captured = capsys.readouterr()
         return Answer(code, captured.out, captured.err)
@@ -328,7 +328,7 @@ def test_the_summary_says_where_rolling_ends(command: Any) -> None:
 
 
 def test_a_motion_on_a_slope_has_a_summary(command: Any) -> None:
-    """A body on a slope rocks between two turning points."""
+    """A body on a slope rocks with a period, or runs downhill without one."""
     assert "slope = 0.1 rad" in command("--slope", "0.1", "--omega", "3", "--time", "2").out
     rocks = ("--slope", "0.1", "--omega", "0.5", "--time", "2", "--json")
     found = strict_json(command(*rocks).out)
@@ -339,8 +339,8 @@ def test_a_motion_on_a_slope_has_a_summary(command: Any) -> None:
 
 
 def test_extreme_motions_still_give_standard_json(command: Any) -> None:
-    """JSON has no infinity, but unlimited friction, rest, lost contact and the separatrix give
-    one."""
+    """JSON has no infinity. Unlimited friction, rest, lost contact and the separatrix lead to
+    infinite values."""
     speed = rl.thresholds(2.0, 1.0).roll_over_speed
     for options in (
         "--omega 50", f"--theta {math.pi / 2} --omega 0", "--omega 5.2 --friction 0",

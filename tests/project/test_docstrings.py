@@ -16,7 +16,7 @@ import pytest
 import rolling_ellipse as rl
 from _pytest.doctest import _get_checker
 
-# `report` has some thirty similar formulas, which its own docstring and example explain
+# functions of `report` that are checked; its docstring explains the thirty or so similar formulas
 OF_THE_REPORT = ("simulate", "errata", "constraint_matrix", "multipliers")
 FOR_FILES = ("computed",)  # a method for files, pickles and `sol`, not for users
 HEADING = re.compile(r"\n(?:Parameters|Attributes|Returns|Raises|Notes|References|Examples)\n---")
@@ -25,7 +25,7 @@ FLAGS = doctest.register_optionflag("NUMBER") | doctest.NORMALIZE_WHITESPACE
 
 
 def explained(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Yield a function, or a class or module with what is public in it, and their names.
+    """Yield a function, or a class or module with its public members, and their names.
 
     Constants, enums, warnings and errors are explained where they are used.
     """
@@ -47,7 +47,7 @@ NAMES = {each: name for key in rl.__all__ for name, each in explained(key, getat
 NAMES[rl] = "rolling_ellipse"
 
 
-def test_all_public_names_are_found_and_their_help_soon_says_how_to_call_them() -> None:
+def test_all_public_names_are_found_and_their_help_starts_with_a_short_text() -> None:
     """The first line is a sentence, and at most eight lines precede the first heading."""
     assert len(NAMES) == 162, sorted(NAMES.values())
     for of, name in NAMES.items():
@@ -55,7 +55,7 @@ def test_all_public_names_are_found_and_their_help_soon_says_how_to_call_them() 
         assert first.endswith(".") and (len(others) <= 8 or inspect.ismodule(of)), name
 
 
-def test_the_help_of_the_package_places_every_function_at_a_task() -> None:
+def test_the_help_of_the_package_lists_every_function_under_a_task() -> None:
     functions = {each for each in rl.__all__ if inspect.isfunction(getattr(rl, each))}
     placed = {*re.findall(r"`(\w+)`", rl.__doc__ or "")}
     assert {each for each in functions - placed if not each.startswith("plot_")} == set()
@@ -63,7 +63,7 @@ def test_the_help_of_the_package_places_every_function_at_a_task() -> None:
 
 @pytest.mark.parametrize("of", NAMES, ids=NAMES.values())
 def test_an_example_runs_as_it_is_printed(of: Any, tmp_path: Path, monkeypatch: Any) -> None:
-    """Each example runs in an empty folder and knows only `rl` and `np`."""
+    """Each example runs in an empty folder with only `rl` and `np` defined."""
     text = inspect.getdoc(of) or ""
     heading, section = text.partition("\nExamples\n--------\n")[1:]
     examples = doctest.DocTestParser().get_examples(text)

@@ -37,7 +37,7 @@ def test_citations_are_distinguished_from_other_brackets() -> None:
 
 def test_each_formula_number_is_defined_once_and_none_is_missing() -> None:
     assert list(range(1, len(DEFINED) + 1)) == DEFINED
-    assert len(DEFINED) >= 30  # fewer: the search no longer recognises headings
+    assert len(DEFINED) >= 30  # fewer if the search no longer recognises headings
 
 
 def test_every_formula_is_cited_by_the_core() -> None:

@@ -14,8 +14,8 @@ from oracles.paths import ROOT
 from PIL import Image
 
 FOLDER = ROOT / "docs" / "gallery"
-TIMED = "work_precision.png"  # has times, which differ each time
-# Largest mean difference of two equal pictures, reduced in size, on a scale of 255. Versions of
+TIMED = "work_precision.png"  # shows measured times, which differ between runs
+# Largest mean difference of a picture drawn twice, reduced in size, on a scale of 255. Versions of
 # matplotlib move letters by a pixel; the two most similar pictures of the page differ by more than
 # twice as much.
 ALIKE = 2.0

@@ -80,7 +80,7 @@ ctypes.CDLL("libm.so.6").fesetenv(environment)
 
 
 def changed(deed: str) -> str:
-    """Names of the state that a program changes, in a separate process."""
+    """Names of the parts of the state that a program changes in a separate process."""
     done = subprocess.run(
         [sys.executable, "-c", STATE.replace("{deed}", deed)],
         env=os.environ | {"MPLBACKEND": "agg"}, capture_output=True, text=True, timeout=300,

@@ -1,8 +1,8 @@
-"""The lists "To add ..." of docs/architecture.md name every file that an addition of a kind needs.
+"""The lists "To add ..." of docs/architecture.md name every file that an addition must change.
 
-Existing things of a kind show which files these are: the sources that name all of them must be
-those on the page. A list also fails if one of its files moves. PLACES finds code that depends on a
-law or a processor; these lists may name functions instead of files.
+For each kind of addition, the list must have exactly the sources that name all existing things of
+that kind, and a list fails if one of its files moves. PLACES has patterns of code that depends on a
+law or a processor; its lists may name functions instead of files.
 """
 
 import ast
@@ -38,7 +38,7 @@ PEER_MODULES = [
 
 
 class Kind(NamedTuple):
-    """Words that each file of a list must contain, and its files with other words."""
+    """Words that identify the files of a list, and files of the list without these words."""
 
     words: list[str]
     beside: tuple[str, ...] = ()
@@ -97,8 +97,8 @@ KINDS = {
     "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip
 
-# Patterns of code that depends on a kind of thing. Each file with the pattern is on the list of
-# that kind, or contains a name of the list.
+# Patterns of code that depends on a kind of addition. Each file with the pattern must be on the
+# list of that kind, or contain a name that is on the list.
 PLACES = {
     "a friction law": r"scene_?\.friction\b|double friction[,)]|friction_share",
     "lanes of another processor": r"__x86_64__|cpu_supports|_mm\d+_|\"sse2\"|HAS_LANES",

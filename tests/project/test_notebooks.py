@@ -10,7 +10,7 @@ from oracles.paths import ROOT
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("**/*.ipynb"))
 LIMIT = 1_500_000  # bytes; a larger file is slow to open on the web
-FOLDED = {"tags": ["hide-input"]}  # on the site; the code is behind a line to click on
+FOLDED = {"tags": ["hide-input"]}  # on the site the code is shown after a click
 WIDTH = 105  # characters of a JupyterLab cell in a window of 1280 pixels
 
 

@@ -163,13 +163,13 @@ def test_a_peer_that_is_ahead_is_printed_as_such() -> None:
     assert [line.split()[0] for line in lines[1:]] == list(known)
 
 
-def test_a_well_races_as_long_as_its_swings() -> None:
+def test_a_race_in_a_well_lasts_a_multiple_of_half_its_period() -> None:
     scene = bench_peers.SCENES["W"]
     assert bench_peers.end_of(scene, 0.42) == 0.42 * period(scene) / 2
 
 
 def test_the_judge_detects_a_small_error() -> None:
-    """The judge shares no line with exact rolling, and agrees to a few roundings of theta = 7."""
+    """The judge shares no code with exact rolling; both agree to a few roundings of theta = 7."""
     exact = bench_peers.in_40_digits(R)
     off = [float(v[0] - own) for v, own in zip(exact([T]), exact_end(T), strict=True)]
     assert 0 < max(map(abs, off)) < 1e-14

@@ -1,6 +1,6 @@
 """Public functions return the known physical numbers of the 2:1 disc on Earth.
 
-The folders of these functions test the numbers against their definitions and in motions.
+Other tests of these functions check the numbers against their definitions and in motions.
 """
 
 import math
@@ -34,13 +34,15 @@ NUMBERS: dict[str, tuple[float | None, float, float]] = {  # found, known, relat
 
 
 @pytest.mark.parametrize(("found", "number", "error"), NUMBERS.values(), ids=NUMBERS)
-def test_physical_values_agree_to_all_digits(found: float, number: float, error: float) -> None:
+def test_physical_values_agree_to_all_known_digits(
+    found: float, number: float, error: float
+) -> None:
     assert found == pytest.approx(number, rel=error, abs=0)
 
 
 def test_the_centre_path_agrees_with_project_euler_525() -> None:
     """In Project Euler 525 the centre of a 4:2 ellipse moves C = 21.38816906 m in one turn, the
-    integral of |d(x, h)/d theta| = r; here by the rates of a motion."""
+    integral of |d(x, h)/d theta| = r; here it is computed from the rates of a motion."""
     turning = Scene(4.0, 2.0, omega=3.0)
     trajectory = rl.simulate(turning, np.linspace(0, period(turning), 2001))
     speed = np.hypot(trajectory.x_dot, trajectory.z_dot)

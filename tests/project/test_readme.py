@@ -1,4 +1,4 @@
-"""The Python code of the README and of the guides runs, one block of a page after another."""
+"""The Python code of the README and of the guides runs, block by block."""
 
 import json
 import re
@@ -81,7 +81,7 @@ def test_the_readme_is_short_and_its_links_work() -> None:
     assert len(README.splitlines()) <= 132
 
 
-def test_the_paper_has_its_sections_a_reference_for_each_name_and_the_scores_of_the_data() -> None:
+def test_the_paper_has_its_sections_a_reference_for_each_citation_and_the_scores() -> None:
     assert re.findall("^# (.+)", PAPER, re.MULTILINE) == [
         "Summary", "Statement of need", "State of the field", "Software design",
         "Research impact statement", "Limits", "AI usage disclosure", "Acknowledgements",

@@ -36,7 +36,7 @@ class Judged(NamedTuple):
     truth: oracles.rolling.Extremes
 
     def margins(self) -> tuple[Long, Long]:
-        """Least margins of N > 0 and |F| <= mu N, in the oracle's errors."""
+        """Least margins of N > 0 and |F| <= mu N, in units of the oracle's errors."""
         moving, friction, truth = self.sample.motion(), self.sample.friction, self.truth
         there = oracles.rolling.forces(moving, *oracles.rolling.chart(moving).sides(truth.needed_v))
         _, grip = there.margins(friction)
@@ -79,7 +79,7 @@ def judged() -> list[Judged]:
 
 
 def at_rest(sample: Sample) -> NDArray[np.bool_]:
-    """Whether the package counts a start as rest: omega = 0 and h' within 8 ulp of the size."""
+    """Whether the package counts a start as rest: omega = 0 and |h'| <= 8 ulp of the size."""
     _, slope, *_ = oracles.geometry.outline(sample.a, sample.b, *reduced_start(sample))
     resting: NDArray[np.bool_] = slope <= 8 * EPS * np.maximum(sample.a, sample.b)
     return (sample.omega == 0) & resting
@@ -171,7 +171,7 @@ def test_no_verdict_is_wrong(judged: list[Judged]) -> None:
             chunk.validity == verdict
             for verdict in (Validity.VALID, Validity.INVALID, Validity.EDGE, Validity.NO_PROOF)
         )
-        # 0.1 errors: the truth and the inputs that the package forms (k^2) are known to 1e-16
+        # a margin of 0.1 errors allows for the truth and for k^2, both of which are known to 1e-16
         false = (valid & (margin < -0.1) & ~at_rest(chunk.sample)) | (invalid & (margin > 0.1))
         assert not false.any(), [chunk.sample.scene(int(row)) for row in np.flatnonzero(false)[:3]]
         vague = edge & (chunk.distance() > EDGE_MARGIN)
@@ -191,7 +191,8 @@ def test_the_smallest_normal_force_agrees_with_the_oracle(judged: list[Judged]) 
         assert np.all((angle >= 0) & (angle <= math.pi / 2))
         sides = oracles.geometry.reduced(angle, chunk.sample.a[known], chunk.sample.b[known])
         there = oracles.rolling.forces(chunk.sample.motion(known), *sides)
-        # an extreme is flat, or an ulp of its angle moves it: 1e-6 of the terms covers both
+        # near an extreme the force hardly varies, or an ulp of the angle changes it: 1e-6 of the
+        # terms covers both
         slack = 1e6 * there.normal_error
         assert np.all(np.abs(there.normal - chunk.truth.normal[known]) <= slack)
 
@@ -257,7 +258,7 @@ def road(moving: Motion, theta: float, omega: float) -> Road:
 
 
 def slack(moving: Motion, friction: float, phi: Long) -> Long:
-    """Margin of the rolling law at angles, in the errors of double arithmetic."""
+    """Margin of the rolling law at angles, in units of the errors of double arithmetic."""
     found = oracles.rolling.forces(moving, np.abs(np.sin(phi)), np.abs(np.cos(phi)))
     return np.minimum(*found.margins(friction))
 
@@ -348,7 +349,7 @@ def test_low_friction_ends_rolling_soon_after_a_start_with_no_friction_force(
         h, slope, _ = oracles.geometry.height_slopes(mp.mpf(theta), a, b)
         omega = mp.mpf(side)
         if theta not in (0.0, math.pi / 2):
-            # omega of F = h theta'' + h' omega^2 = 0 with theta'' = -h' (g + rho omega^2)/D
+            # F = h theta'' + h' omega^2 vanishes at this omega: theta'' = -h' (g + rho omega^2)/D
             radius = (a * b) ** 2 / h**3
             omega = side * mp.sqrt(h / (gyration2 + h**2 + slope**2 - h * radius))
         scene = Scene(a, b, gravity=1.0, friction=friction, theta=theta, omega=float(omega))
@@ -357,8 +358,8 @@ def test_low_friction_ends_rolling_soon_after_a_start_with_no_friction_force(
         assert found.ends_at is not None
         way = side * (mp.mpf(found.ends_at) - theta)
         assert way < 1e3 * friction
-        # an angle of at most half a turn is resolved to an ulp, relative to the start if that is 0;
-        # the forces to 1e-12, the oracle's allowance for double arithmetic
+        # angles up to half a turn are resolved to an ulp, or relative to the turn if the start is
+        # 0, and forces to 1e-12, the oracle's allowance for double arithmetic
         near = (4 * EPS * math.pi if theta else 0) + 1e-12 * abs(way)
         for share in (0, 0.01, 0.5, 1):
             assert grip(scene, gyration2, theta + side * share * max(way - near, 0)) > 0
@@ -454,8 +455,8 @@ EQUILIBRIA = [
 
 @pytest.mark.parametrize(("a", "b", "theta"), EQUILIBRIA)
 def test_a_body_at_rest_in_equilibrium_is_never_invalid(a: float, b: float, theta: float) -> None:
-    """A body at rest stays at rest, because it needs almost no friction: NO_PROOF is allowed,
-    INVALID is not. The forces of a body lying flat are exact."""
+    """A body at rest needs almost no friction and stays at rest, so INVALID is wrong and NO_PROOF
+    is allowed. The forces on a body lying flat are exact."""
     scene = Scene(a, b, mass=3.0, theta=theta)
     for friction in (math.inf, 0.8):
         found = certify(scene.replace(friction=friction))
@@ -503,8 +504,8 @@ def test_a_body_that_does_not_roll_gets_no_proof(scene: Scene) -> None:
 
 
 def test_the_certificate_judges_the_state_after_the_blow() -> None:
-    """The certificate belongs to the 3.2 rad/s of rolling after the report's blow, not to rest or
-    to the free body's 5.76 rad/s, which cannot roll on."""
+    """The certificate is for rolling at 3.2 rad/s after the report's blow, not for the rest before
+    it or for the 5.76 rad/s of a free body, at which rolling could not continue."""
     struck = certify(Scene(2.0, 1.0, mass=10.0, impulse=Impulse.press(48.0, 1.5)))
     moving = certify(Scene(2.0, 1.0, mass=10.0, omega=3.2))
     assert struck.validity is Validity.VALID

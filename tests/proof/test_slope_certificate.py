@@ -96,8 +96,8 @@ def random_scene(rng: np.random.Generator) -> Scene:
 def test_no_verdict_is_wrong(seed: int) -> None:
     """In 60 scenes per seed VALID is right, and INVALID states the angle that the scan finds.
 
-    A scan misses violations narrower than the spacing of its angles, 1e-3 rad. They are shallower
-    than 1e-5 of the forces: these need 0.01 rad or more to change by their own size.
+    A scan misses violations narrower than the spacing of its angles, 1e-3 rad. They are smaller
+    than 1e-5 of the forces, which need 0.01 rad or more to change by their own size.
     """
     rng = np.random.default_rng(seed)
     met = {"broken": 0, "turned back": 0}
@@ -125,8 +125,8 @@ def test_no_verdict_is_wrong(seed: int) -> None:
 def test_a_nearly_round_body_rolls_far_and_stops_rolling_at_its_bound(direction: int) -> None:
     """The last half turn of a long roll agrees with the minimum of a bound over the angle.
 
-    Downhill the law holds in half turn n as long as W + n w stays below W_plus at every angle,
-    a bound from the forces, linear in W; so rolling ends in the half turn after min (W_plus - W)/w.
+    The forces are linear in W, so that at each angle the law holds while W is below a bound W_plus.
+    Downhill W grows by w per half turn. Rolling ends in the half turn after min (W_plus - W)/w.
     """
     scene = Scene(1.0, 1 - 1e-5, slope=0.05, omega=3.0 * direction, friction=0.5)
     a, b, k2 = scene.a, scene.b, scene.gyration2
@@ -157,8 +157,8 @@ def test_a_nearly_round_body_rolls_far_and_stops_rolling_at_its_bound(direction:
 
 
 def test_constant_forces_have_an_exact_friction_threshold() -> None:
-    """A disc needs the friction tan(slope) k^2/(k^2 + a^2) = tan(slope)/3, a body at rest
-    tan(slope): VALID just above, INVALID just below, EDGE at the threshold."""
+    """A circle needs a friction of tan(slope) k^2/(k^2 + a^2) = tan(slope)/3, and a body at rest
+    tan(slope). The verdict is VALID just above, INVALID just below and EDGE at the threshold."""
     incline = math.tan(0.2)
     tangent = 2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2))
     circle = Scene(1.0, 1.0, slope=0.2, omega=1.0)

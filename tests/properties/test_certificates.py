@@ -1,4 +1,4 @@
-"""Properties of every certificate: effects of more friction, another mass and mirroring."""
+"""Properties of every certificate: effects of more friction, other units and mirroring."""
 
 import math
 from typing import Any
@@ -45,7 +45,7 @@ def test_the_required_friction_is_just_enough(data: Any) -> None:
     assume(1e-200 < needed < 1e5)  # a millionth of less than 1e-200 may be subnormal
     above = certify(scene.replace(friction=needed * (1 + 1e-6)))
     below = certify(scene.replace(friction=needed * (1 - 1e-6)))
-    # The forces may be proportional to a - b, or remain from a nearly cancelled weight; then a
+    # The forces may be proportional to a - b, or be small because the weight nearly cancels; then a
     # millionth of them is close to rounding.
     pressed = above.smallest_normal_force
     lifts = pressed is not None and pressed < 0.01 * scene.mass * scene.gravity
@@ -82,7 +82,7 @@ def test_an_outcome_does_not_depend_on_units(data: Any) -> None:
 
 
 @given(st.data())
-def test_thresholds_grow_with_friction(data: Any) -> None:
+def test_more_friction_does_not_lower_the_slip_speed(data: Any) -> None:
     of = data.draw(motions())
     body = {name: of[name] for name in ("a", "b", "gravity", "gyration2")}
     friction = data.draw(FRICTIONS)

@@ -143,8 +143,8 @@ def energy(theta: float, omega: float, a: float, b: float, gravity: float, gyrat
 
 @given(st.data())
 def test_energy_is_constant_for_a_billion_half_turns(data: Any) -> None:
-    """The energy is known as accurately as theta and omega; an ulp of a large angle turns the
-    body."""
+    """The energy is known as accurately as theta and omega; an ulp of a large angle is a noticeable
+    turn of the body."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
     theta, omega, _ = flow(t, **motion)

@@ -122,13 +122,13 @@ def surface_speed(scene: Scene, state: InitialState) -> float:
 
 @given(st.data())
 def test_energy_never_grows_in_contact(data: Any) -> None:
-    """Energy never grows through an event or in an arc; the potential energy includes the slope.
+    """Energy grows neither at an event nor along an arc; the potential energy includes the slope.
 
     An event rounds each number of its state a few times, and a slip ends to within the rounding of
     its initial speeds. The energy of an arc is known to within the rounding of its largest terms:
     the energies at both ends and, in a flight, the height between them. Averaged bounces use their
-    initial forces, so their error is the square of their duration over the time in which the body
-    falls, turns by b/a, or is turned by a force.
+    initial forces, so their relative error is the square of the ratio of their duration to the time
+    in which the body falls, turns by b/a, or is turned by a force.
     """
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 1.5)) * clock(scene)
@@ -209,7 +209,8 @@ def test_a_reversed_motion_without_friction_returns_to_its_start(data: Any) -> N
         for name, size in sizes.items():
             errors[name] += ROUNDINGS * EPS * size
         known += spread(way_back(share * span), turned_round(at), errors)
-    assume(known[0] < 1e-3)  # at a tip the bound may be smaller at its ends than between them
+    # near a tip smaller errors than those assumed may change the start more
+    assume(known[0] < 1e-3)
     grain = ROUNDINGS * EPS * max(1.0, abs(scene.theta), abs(at.theta))  # rounding of any angle
     own = grain * speed * np.array([1 / speed, 1 / length, span, span, 1, 1])
     start = np.array([getattr(there, name)[0] for name in names]) * [1, -1, 1, 1, -1, -1]

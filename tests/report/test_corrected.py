@@ -38,8 +38,9 @@ def test_corrected_rejects_and_names_every_violation(options: dict[str, Any]) ->
 
 @pytest.mark.parametrize(("a", "theta"), [(2.0, -1.0), (100.0, -0.01)])
 def test_corrected_accepts_starts_within_rounding_of_coordinates(a: float, theta: float) -> None:
-    """For f4 = psi - psi(theta), tan psi = a^2 tan theta, this is twice 16 ulp of psi and theta and
-    8 eps of psi - theta, plus 16 eps of |theta| + |psi|; f4 itself is known to 1e-15."""
+    """The tolerance of f4 = psi - psi(theta), where tan psi = a^2 tan theta, is twice the sum of 16
+    ulp of psi and theta and 8 eps of psi - theta, plus 16 eps of |theta| + |psi|. f4 itself is
+    known to 1e-15."""
     q, q_dot = rl.kinematics(theta, 0.0, a=a, b=1.0)
     slope = a**2 * (1 + np.tan(theta) ** 2) / (1 + a**4 * np.tan(theta) ** 2)
     ulp = np.spacing(np.abs(q))
@@ -55,8 +56,9 @@ def test_corrected_accepts_starts_within_rounding_of_coordinates(a: float, theta
 
 
 def test_corrected_projects_the_reports_own_start() -> None:
-    """The report's start touches the ground, so only rates change: omega = k^2 / (k^2 + h^2) = 1.25
-    / 2.25 of 1 rad/s (x_dot = 0, and z_dot acts on h' = 0), psi_dot = (a/b)^2 omega there."""
+    """The report's start touches the ground, so only its rates change. omega becomes k^2/(k^2 +
+    h^2) = 1.25/2.25 of 1 rad/s, because x_dot is 0 and z_dot has the factor h' = 0; psi_dot becomes
+    (a/b)^2 omega."""
     motion = corrected(OWN_Q, OWN_RATES, [0.0, 1.0], consistent="project", mass=3.0)
     assert np.array_equal(motion.q[0], OWN_Q)
     assert motion.q_dot[0] == pytest.approx([5 / 9, 0, 5 / 9, 20 / 9, 0], rel=1e-14, abs=1e-15)
@@ -114,7 +116,7 @@ def test_corrected_runs_the_reports_own_start_as_given_with_a_warning() -> None:
     assert str(said.message) == f"the start violates constraints: {OWN_VIOLATIONS}"
     assert said.filename == __file__
     assert np.array_equal(motion.q[0], OWN_Q) and np.array_equal(motion.q_dot[0], OWN_RATES)
-    # index 1 keeps the rates of f1 ... f4: 1e-8 a step, some 100 steps, in rates of some 10
+    # index 1 keeps the rates of f1 ... f4, of some 10, to 1e-8 per step in some 100 steps
     held = motion.constraint_residuals()
     law = np.outer(motion.t, [1.0, 0.0, -2.5])
     assert np.allclose(held.position, law, rtol=0, atol=1e-5)
@@ -123,8 +125,8 @@ def test_corrected_runs_the_reports_own_start_as_given_with_a_warning() -> None:
 
 
 def test_a_motion_that_starts_off_the_constraints_is_never_valid() -> None:
-    """This holds even for a speed of 1e-6 m/s off the ground, with forces that the ground can
-    exert."""
+    """The motion is invalid even if the body leaves the ground at only 1e-6 m/s and the ground
+    could exert the forces."""
     motion = lifted(0.5)
     assert motion.valid_until == 0 and motion.status is rl.Status.VALIDITY_LOST
     assert motion.message == "the start violates the constraints, unlike any body on the ground"
@@ -154,7 +156,7 @@ def test_the_gap_of_an_inconsistent_start_evolves_as_predicted(
     motion = as_given(
         Q + gap * shift, Q_DOT + rate * shift, times, stabilization=stabilization, **options
     )
-    # 1e-8 a step as above; projected coordinates keep their last digit
+    # 1e-8 per step as above; projected coordinates are exact to their last digit
     bound = 1e-5 if stabilization in ("none", "baumgarte") else 1e-14
     assert np.allclose(motion.constraint_residuals().gap, law(times, gap, rate), atol=bound, rtol=0)
 

@@ -1,4 +1,4 @@
-"""The errata of the report: two numbers for each row, then each equation.
+"""The errata of the report: the printed and the right number of each row, then each equation.
 
 The right numbers agree with closed forms, written here from h and its derivatives
 (oracles/geometry.py), with psi and r by r cos(psi - theta) = h and r sin(psi - theta) = h'.
@@ -115,7 +115,7 @@ ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     # gravity has the wrong sign
     "eq 39, λ2": lambda at: (10 * at.normal - 2 * 98.1, 10 * at.normal, 0),
     "eqs 39 to 42, g": lambda at: (at.lifted * at.cosine, 10 * at.normal * at.cosine, 0),
-    # lambda4 = -cos^2 couple/a^2 by the matrix, and + by eq 35: it stays twice
+    # lambda4 is -cos^2 couple/a^2 by the matrix and +cos^2 couple/a^2 by eq 35: the couple doubles
     "eq 39, λ4, sign": lambda at: (2 * at.couple, 0, at.couple),
     # the multipliers solve eq 37; eq 36 with them is eq 41
     "eq 41": lambda at: (0, at.head() - 2 * at.polar**1.5 * at.all_terms() / at.divisor(), 1e3),
@@ -126,7 +126,7 @@ ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
         2 * at.polar**1.5 * 160 * at.normal * at.slope,
         0,
     ),
-    # the moment of the forces about G says where the ground acts: I alpha = -h F - lead N
+    # the moment of the forces about G determines where the ground acts: I alpha = -h F - lead N
     "section 3.4, point O": lambda at: (
         -rolled(0.2, ANGLE), -(1.25 * at.alpha + at.h * at.x_ddot) / at.normal, 0,
     ),

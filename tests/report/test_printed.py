@@ -30,8 +30,8 @@ def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.Printe
 @pytest.mark.parametrize(("printed", "gap"), GAPS)
 @pytest.mark.parametrize("mass", [1.0, 10.0])
 def test_wrong_equations_lift_the_body(printed: tuple[str, ...], gap: float, mass: float) -> None:
-    """Cause (a): the equations are wrong. This happens from their own consistent start, at any
-    tolerance."""
+    """Cause (a): the equations are wrong. The body leaves the ground even from a start that is
+    consistent with them, at any tolerance."""
     q, q_dot = start(0.2, 2.0, printed)
     how: dict[str, Any] = {"printed": printed, "mass": mass}
     loose, tight = (run(q, q_dot, [0.25], rtol=r, atol=r, **how) for r in (1e-8, 1e-11))
@@ -50,7 +50,7 @@ def test_the_right_rows_give_the_exact_motion() -> None:
     times = np.linspace(0, 3, 31)
     motion = run(q, q_dot, times, printed=(), rtol=1e-11, atol=1e-11)
     exact = rl.simulate(rl.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), times)
-    # 1e-11 a step, some 500 steps, growing with the square of time for index 1
+    # 1e-11 per step in some 500 steps; for index 1 errors grow with the square of time
     assert np.max(np.abs(motion.q - exact.q)) < 1e-8
     assert np.max(np.abs(motion.q_dot - exact.q_dot)) < 1e-8
     assert np.max(np.abs(motion.multipliers[:, :2] - exact.multipliers[:, :2])) < 1e-6

@@ -41,7 +41,7 @@ def exact_period(motion: Motion, count: int = 28) -> Any:
 
 
 def period_unit(motion: Motion) -> float:
-    """Effect of one rounding of each input, by central differences in few digits, plus two ulp."""
+    """Effect of one rounding of each input, by central differences of a coarse rule, plus 2 ulp."""
     small, total = mp.mpf("1e-18"), mp.mpf(0)
     for i, value in enumerate(motion):
         change = small * (abs(mp.mpf(value)) if PARAMETERS[i] != "theta" else 1)

@@ -92,7 +92,7 @@ def errors(
 def test_flow_is_accurate_to_a_few_rounding_units(
     rows: list[Row], call: Callable[[list[Row]], Iterator[Answer]], rounding: float
 ) -> None:
-    """x at many times may also have the rounding of a length like the body's."""
+    """x at many times may also err by the rounding of a length of the body's size."""
     found = errors(rows, call, rounding)
     worst = max(range(len(rows)), key=lambda i: np.nan_to_num(found[i], nan=math.inf).max())
     told(f"median {np.median(found, axis=0)}, worst {found[worst]} units, of {rows[worst]}")

@@ -1,4 +1,4 @@
-"""Gentle slopes and slowly passed tips against 40 digits (reference/make_gentle_reference.py).
+"""Motions on gentle slopes and slowly over tips against 40 digits (make_gentle_reference.py).
 
 The slopes range from 1e-18 to 1e-3. Motions start on or near a tip, or only just pass a tip, or
 just fail to. Every number has a unit: the effect of a relative change of 2.2e-16 of each input, and
@@ -60,9 +60,10 @@ def test_the_table_covers_all_slopes_and_shapes() -> None:
 def test_the_flow_is_accurate_to_a_few_rounding_units(row: Row) -> None:
     """The bound is four units, for one time and for the last of many.
 
-    W near a tip has the rounding of W where the motion started, of the size of a rounded input;
-    some roundings of the time and of each answer add to it. The largest error was 1.6. When W was
-    counted from the start alone, by sin^2, 31 cases exceeded the bound, by up to 5e5 units.
+    Near a tip W has the rounding error of W at the start, about the effect of rounding one input.
+    Some roundings of the time and of each answer add to it. The largest error was 1.6. An earlier
+    version, which computed W from the start alone with sin^2, exceeded the bound in 31 cases, by up
+    to 5e5 units.
     """
     start, t = start_of(row), float(row["t"])
     alone = rl.flow(t, **start)
@@ -123,7 +124,7 @@ def test_forces_are_accurate_to_a_few_rounding_units(row: Row) -> None:
 
 @each_row
 def test_rolling_ends_where_the_table_requires_all_available_friction(row: Row) -> None:
-    """If the friction is |F|/N at t, rolling ends at t or earlier, where it needs as much.
+    """If the friction is |F|/N at t, rolling ends at t or at an earlier time that needs as much.
 
     The end errs by four units of the margin mu N - |F| over its rate, and two ulp of the time.
     """

@@ -38,7 +38,7 @@ def swing(motion: tuple[float, ...]) -> float:
 
 
 def times_of(motion: tuple[float, ...]) -> np.ndarray:
-    """Times on both sides of the start, from an instant to the last that doubles resolve."""
+    """Times on both sides of the start, up to the longest that doubles resolve."""
     spans = swing(motion) * np.array([1e-6, 0.1, 1.0, 30.0, 1e9, 1e14])
     return np.concatenate([span * np.linspace(-0.3, 1.0, 411) for span in spans])
 
@@ -65,8 +65,8 @@ def test_results_depend_only_on_the_time_bit_for_bit(motion: tuple[float, ...]) 
 
 @each_motion
 def test_results_at_many_times_agree_with_those_at_single_times(motion: tuple[float, ...]) -> None:
-    """Each answer may err by the bound; x may also have the rounding of a length like the
-    body's."""
+    """Each answer may err by the bound; x may also err by the rounding of a length of the body's
+    size."""
     start = arguments(motion)
     times = times_of(motion)
     found = np.array(flow(times, **start))[:, ::137]

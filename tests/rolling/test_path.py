@@ -62,7 +62,7 @@ def times_past_a_tip(start: Start, rng: random.Random) -> list[float]:
     a, b, theta, omega = start
     body = Scene(a, b)
     long_axis, short_axis = max(a, b), min(a, b)
-    # Rate at which a fall from the tip grows, from 1e-300 to 1.
+    # rate at which a fall from the tip grows, and number of growth times until it is of size 1
     inertia = long_axis * (body.gyration2 + long_axis**2)
     rate = math.sqrt(9.81 * (long_axis - short_axis) * (long_axis + short_axis) / inertia)
     gone = math.log(1 / min(abs(omega) / rate + abs(math.cos(theta)) * (a > b) + 1e-300, 0.5))
@@ -99,7 +99,7 @@ def test_x_agrees_with_the_centre_path_at_the_angle() -> None:
     assert max(worst.values()) <= LARGEST_ERROR, worst
 
 
-# bodies flat, upright, round and of the thinnest shape; both directions, several half turns
+# flat, upright, round and thinnest bodies that turn in both directions, some for many half turns
 SCENES = {
     "flat": Scene(2.0, 1.0, theta=0.2, omega=3.2, x=0.3),
     "upright": Scene(0.7, 1.9, theta=1.2, omega=-4.0),

@@ -81,8 +81,8 @@ def test_a_body_stays_accurate_over_many_half_turns_downhill(name: str, half_tur
     """After n half turns the body has the same orientation as at the start, and its W has grown by
     n w.
 
-    The time of the simulation is rounded by half an ulp, and the quadrature has a few roundings, as
-    if the inputs were changed by 8 roundings (3 at most were observed).
+    The simulated time is rounded by half an ulp, and the quadrature has a few roundings. Together
+    they act like a change of the inputs by 8 roundings (at most 3 were observed).
     """
     scene = DOWNHILL[name]
     with mp.workdps(DIGITS):
@@ -113,10 +113,10 @@ def test_a_body_stays_accurate_over_many_half_turns_downhill(name: str, half_tur
 def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) -> None:
     """Reversing a motion in time at any of its states retraces it, uphill and back.
 
-    The reversed state at t reaches the reversed start after another t, by three methods: the sum
-    uphill, the series over the top, the sum downhill. A rounding of the state in between changes
-    the energy and moves the end, in proportion to the time since then over the time scale of half a
-    turn: 64 roundings of the path are allowed.
+    The reversed state at t reaches the reversed start after another t. The package computes this by
+    a sum uphill, by series over the top and by a sum downhill. A rounding of the state in between
+    changes the energy and moves the end, in proportion to the time since then over the time scale
+    of half a turn: 64 roundings of the path are allowed.
     """
     scene = rl.Scene(1.0, ratio, slope=slope, theta=0.4, omega=-8.0)
     whole = rolled(scene, [0.0, 2e4])
@@ -131,8 +131,8 @@ def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) ->
 
 
 def test_a_body_returns_to_its_start_after_twice_the_time_to_its_turning_point() -> None:
-    """The mirror image of the climb ends at this time; neighbouring doubles belong to either
-    stretch."""
+    """The mirror image of the climb ends at this time. The tested doubles lie on both sides of this
+    end."""
     for omega in np.linspace(-6.0, -1.0, 41):
         scene = rl.Scene(1.0, 0.7, slope=0.3, omega=omega)
         back = 2 * rolled(scene, [0.0, 30.0]).when(omega=0.0)[0]
@@ -146,8 +146,8 @@ def test_a_body_returns_to_its_start_after_twice_the_time_to_its_turning_point()
 def test_a_short_path_stays_accurate(way: float, omega: float) -> None:
     """theta and x of a short path agree with the energy integral, up a long climb and down.
 
-    The bound is 4 roundings of the path and of the geometry at the start (0.7 at most were
-    observed; a path counted from half a turn further up had an error of 1e-16 m).
+    The bound is 4 roundings of the path and of the geometry at the start (at most 0.7 was
+    observed). A path computed from half a turn further up had an error of 1e-16 m.
     """
     scene = rl.Scene(1.0, 0.5, slope=1e-3, theta=0.4, omega=omega)
     with mp.workdps(25):
@@ -165,7 +165,7 @@ def test_a_short_path_stays_accurate(way: float, omega: float) -> None:
         assert abs(found.theta[0] - end) < EPS + 4 * EPS * way
         assert abs(found.x[0] - path) < 4 * EPS * abs(path)
         assert abs(flow[0] - end) < EPS + 4 * EPS * way
-        # from a tenth of a radian on the path is a difference of two paths from the flat position
+        # a path of 0.1 rad or more is the difference of two paths from the flat position
         assert abs(flow[2] - path) < 4 * EPS * abs(path) + (EPS / 2 if way == 0.1 else 0)
 
 
@@ -188,8 +188,8 @@ def test_no_circle_rests_on_a_slope(slope: float) -> None:
 def assert_keeps_energy(found: rl.Trajectory) -> None:
     """Assert that E/m = D omega^2/2 + g (h cos(slope) - x sin(slope)) is constant, for b = 1.
 
-    Each term has a few roundings, 16 in all. Roundings of x and theta change h in proportion to the
-    curvature of the tip, which is 1/ratio over the length of a thin body and enters h'' squared.
+    Each term has a few roundings, 16 in all. A rounding of theta also changes h and h', by h' and
+    h'' times as much, and h'' is large on the tip of a thin body.
     """
     axes = {"a": found.scene.a, "b": 1.0}
     size = found.kinetic_energy + np.abs(found.energy - found.kinetic_energy)

@@ -46,7 +46,7 @@ class Motion(NamedTuple):
 
     @property
     def half_turns(self) -> float:
-        """Half turns from the start to the last time, without those back and forth."""
+        """Net number of half turns from the start to the last time."""
         return abs(float(self.values[-1, 0]) - self.scene.theta) / math.pi
 
 
@@ -90,7 +90,7 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
 
 
 def reach_of_series(motion: Motion) -> float:
-    """Time R in which the fastest turning passes the nearest complex singularity [s].
+    """Time R in which the fastest turn covers the distance to the nearest complex singularity [s].
 
     The singularity in theta is at k^2 + h^2 + h'^2 = 0 beside a flat side; energy bounds omega. A
     step far below R resolves everything, even the flat side of a thin ellipse that flicks over it.
@@ -112,14 +112,14 @@ def test_exact_is_accurate_to_a_few_rounding_errors(motion: Motion) -> None:
     """theta, omega and x err by at most four units; the forces follow from theta and omega.
 
     A state takes some hundred series, each with its own rounding, and the energy keeps omega
-    accurate; the sum over half turns adds a few roundings of the time. The errors were 1.1 at most,
-    0.1 in the median.
+    accurate; the sum over half turns adds a few roundings of the time. The errors were at most 1.1,
+    and 0.1 in the median.
     """
     assert errors(motion, method="exact")[:, :3].max() < 4
 
 
 def dop853_errors(motion: Motion) -> NDArray[np.float64]:
-    """Errors (3, 5) as changes of the inputs, in units of the tolerance rtol |theta|."""
+    """Errors (3, 5), expressed as changes of the inputs in units of the tolerance rtol |theta|."""
     rtol = 1e-13
     found = errors(motion, method="dop853", rtol=rtol, atol=1e-15)
     tolerances: NDArray[np.float64] = found * ROUNDING / (rtol * motion.farthest)
@@ -132,7 +132,7 @@ def test_dop853_stays_within_its_tolerance(motion: Motion) -> None:
 
     In the worst case each of up to 4400 steps would add one tolerance. The controller keeps the
     estimate at 0.9^8 = 0.4 of the tolerance, and the true local error is of a higher order than the
-    estimate: the sum was 1.6 tolerances at most, 0.04 in the median.
+    estimate: the sum was at most 1.6 tolerances, and 0.04 in the median.
     """
     assert dop853_errors(motion).max() < 8
 
@@ -144,7 +144,7 @@ def test_gauss_is_accurate_to_within_rounding(motion: Motion) -> None:
     The error of a step is (4!)^4 / (9 (8!)^3) h^9 y^(9), with y^(9) = 9!/R^9 at most 2e-4 (h/R)^9
     or 3e-15, near the singularity only: a few units. Rounding adds the rest, most where the flat
     side of a thin ellipse makes omega grow and shrink tenfold, and with it the relative error. The
-    errors were 15 at most, 0.7 in the median.
+    errors were at most 15, and 0.7 in the median.
     """
     step = reach_of_series(motion) / 16
     assert errors(motion, method="gauss", stages=4, step=step).max() < 32
@@ -174,8 +174,8 @@ def test_radau_errors_are_as_its_order_predicts() -> None:
 def test_a_small_change_of_an_input_is_detected(name: str) -> None:
     """The check detects a change of any single input by a millionth in every scene.
 
-    Eight tolerances are 8e-13 |theta| of all inputs together, and one input has only a share. A
-    slope of a few milliradians hardly matters to a fast spin: its millionth is 14 tolerances.
+    Eight tolerances correspond to a change of all inputs together by 8e-13 |theta|. A slope of a
+    few milliradians hardly affects a fast spin, but a millionth of it still adds 14 tolerances.
     """
     changed = 0
     for motion in MOTIONS:

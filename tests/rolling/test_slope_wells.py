@@ -1,7 +1,7 @@
 """Rocking in the well of a slope, from 1e-12 rad up to its rim, for up to 1e9 swings.
 
 The table (reference/make_well_reference.py) has the period, and the state at one time, of each
-scene, with a unit for each number: its change by a relative change of 2.2e-16 of every input.
+scene, with a unit for each number: its change if every input changes by 2.2e-16 of itself.
 """
 
 import math
@@ -52,8 +52,8 @@ def test_rocking_is_accurate_to_a_few_rounding_errors(row: dict[str, str]) -> No
 
     A half swing takes a few series, each with a few roundings of time, angle and omega; the phase
     after any number of swings has the roundings of the period. The largest error was 0.8 units.
-    With gravity as a difference of two terms, a third of the scenes erred by more than 8, up to
-    3e7.
+    When gravity was computed as a difference of two terms, a third of the scenes erred by more than
+    8 units, up to 3e7.
     """
     scene, t = table.scene_of(row), float(row["t"])
     state = rolled(scene, [t])
@@ -76,11 +76,11 @@ def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
     """A body that starts towards or away from the rim swings like one that starts at rest farther
     inside.
 
-    The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the least value
-    d (1 - share^2)^(1/2), up to its square and an ulp of theta; the period, 2 log(1/d)/rate plus a
+    The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the least value d (1 -
+    share^2)^(1/2), up to its square and an ulp of theta; the period, 2 log(1/d)/rate plus a
     constant, may differ by as much. After a period the body is at its start, up to an ulp and to
-    the rounding of the period. Crossing the well by series and coming back gave periods with errors
-    of 16 %, and bodies that rolled out.
+    the rounding of the period. An earlier method, which crossed the well by series, gave periods
+    with errors of 16 %, and bodies that left the well.
     """
     (lying, _), (upright, rate) = equilibria(scene)
     inside = math.copysign(distance, lying - upright)

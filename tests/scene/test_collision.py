@@ -1,7 +1,7 @@
 """Collisions with restitution: the law along its impulse path, and its invariants.
 
-The oracle follows the path in straight pieces; the oracle of tests/impacts takes small steps
-without cases.
+The oracle follows the path in straight pieces; the oracle of tests/impacts takes small steps and
+distinguishes no cases.
 """
 
 import math

@@ -133,7 +133,9 @@ def test_a_slope_that_looks_like_degrees_is_questioned(slope: float, asked: bool
 
 
 @pytest.mark.parametrize("impulse", [None, Impulse()])
-def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -> None:
+def test_infinite_friction_prevents_slip_unless_the_ground_would_have_to_pull(
+    impulse: Impulse | None,
+) -> None:
     """At 0.9 rad and 3 rad/s the ground would have to pull, so the limiting slide starts. With a
     friction of 0.01 the message says that friction is too small."""
     given: dict[str, Any] = {"theta": 0.9, "omega": 3.0, "impulse": impulse}
@@ -245,6 +247,6 @@ def test_a_start_with_slip_slides(theta: float) -> None:
      (1e-9, Mode.ROLLING), (0.3, Mode.ROLLING)],
 )  # fmt: skip
 def test_a_body_rests_only_in_equilibrium(theta: float, mode: Mode) -> None:
-    """Rest requires |h'| within 8 ulp, as at the doubles nearest to the first multiples of pi/2."""
+    """Rest requires |h'| of at most 8 ulp, as at the doubles nearest to small multiples of pi/2."""
     assert scene(theta=theta).initial_state.mode == mode
     assert scene(theta=theta, omega=1e-9).initial_state.mode != Mode.REST

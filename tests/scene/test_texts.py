@@ -64,7 +64,7 @@ def test_the_text_is_standard_json_with_the_names_of_scene() -> None:
 
 
 def test_a_state_that_only_a_motion_can_reach_survives_json() -> None:
-    """Just before it hits the ground a body moves into it, which the constructor refuses."""
+    """Just before an impact a body touches the ground and moves into it; Scene() rejects this."""
     motion = rl.simulate(rl.scenes.drop, 1.0)
     (hit, *_) = motion.events
     reached = motion.scene_at(math.nextafter(hit.t, 0.0))
@@ -74,7 +74,7 @@ def test_a_state_that_only_a_motion_can_reach_survives_json() -> None:
 
 
 @pytest.mark.parametrize("prefix", [b"", b"\xef\xbb\xbf", b"\n  "])
-def test_a_path_is_a_file_with_json_or_a_link(prefix: bytes, tmp_path: Path) -> None:
+def test_a_scene_is_read_from_a_file_with_json_or_a_link(prefix: bytes, tmp_path: Path) -> None:
     for text in (FULL.to_json(), "https://pages.example/live/#a=2&b=1&jz=-48&dx=1.5\n"):
         (tmp_path / "scene.json").write_bytes(prefix + text.encode())
         assert Scene.from_json(tmp_path / "scene.json") == Scene.from_json(text)
@@ -91,26 +91,26 @@ def test_an_older_link_gives_the_scene_of_the_page(link: str, given: dict[str, f
     assert Scene.from_json(f"{struck}&{link}").impulse == Impulse.press(48.0, 1.5)
 
 
-def test_the_link_of_a_page_without_rolling_resistance_is_read() -> None:
+def test_a_link_from_before_rolling_resistance_is_read() -> None:
     link = (TESTS / "export" / "old_files" / "link.txt").read_text(encoding="utf-8")
     assert Scene.from_json(link) == Scene(
         2.0, 1.0, slope=0.01, friction=1.0, restitution=0.01, theta=0.05, omega=5.2
     )
 
 
-def test_a_link_may_have_the_names_of_scene() -> None:
+def test_a_link_may_use_the_names_of_the_arguments_of_scene() -> None:
     link = "#a=2&b=1&inertia=6.25&z=1.5&x_dot=1e-7&friction=inf&jx=0&jz=0&t=6&lang=en"
     given = Scene(2.0, 1.0, inertia=6.25, z=1.5, x_dot=1e-7, impulse=Impulse())
     assert Scene.from_json(link) == given
 
 
-def test_an_unknown_key_is_answered_with_the_right_one() -> None:
+def test_the_error_for_an_unknown_key_suggests_the_right_one() -> None:
     for text in ('{"version": 1, "a": 2, "b": 1, "mu": 1}', "#a=2&b=1&mu=1"):
         with pytest.raises(ValueError, match=r"got 'mu'; did you mean friction\?$"):
             Scene.from_json(text)
 
 
-def test_a_warning_shows_the_blows_that_a_link_has_beside_its_scene() -> None:
+def test_a_warning_shows_the_blows_of_a_link_that_a_scene_cannot_contain() -> None:
     with pytest.warns(UserWarning, match=r": pass 2,0,-1,0\.5,0 to simulate as blows=$"):
         scene = Scene.from_json("#a=2&b=1&t=5&blows=2,0,-1,0.5,0")
     assert scene == Scene(2.0, 1.0) == Scene.from_json("#a=2&b=1&t=5&blows=")

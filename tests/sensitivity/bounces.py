@@ -5,8 +5,8 @@ A flight and the impact that ends it map a state y after an impact to the next o
     z - h = 0 at tau,   J = -(1 + e) u/(1 + h'^2/k^2),   z_dot += J,   omega -= h' J/k^2
 
 with the speed u = z_dot - h' omega. Their derivatives are differences of 1e-25 in 60 digits. With T
-the time of the last impact, the state at a fixed time has dy = (flight's own) - y' dT. An arc
-starts in the state of the motion (`own`), or where the previous arc ends in 60 digits.
+the time of the last impact, the state at a fixed time changes by the dy of its flight less y' dT.
+An arc starts in the state of the motion (`own`), or where the previous arc ends in 60 digits.
 """
 
 from typing import Any

@@ -40,7 +40,8 @@ def support(theta: Any, p: Mapping[str, Any]) -> tuple[Any, Any, Any]:
 
 
 def rates(mode: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
-    """y' of x, z, theta, x_dot, z_dot, omega while rolling, sliding (to `side`) or flying."""
+    """The rates y' of y = (x, z, theta, x_dot, z_dot, omega) in rolling, in sliding with slip of
+    the sign `side`, or in flight."""
     h, h1, h2 = support(y[2], p)
     k2, omega = gyration2(p), y[5]
     down, into = p["gravity"] * np.sin(p["slope"]), p["gravity"] * np.cos(p["slope"])
@@ -58,7 +59,7 @@ def rates(mode: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
 
 
 def guard(kind: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
-    """The function that vanishes at an event; `side` is that of the slip that starts at SLIP."""
+    """The function that vanishes at an event; `side` is the sign of the slip that a SLIP starts."""
     h, _, h2 = support(y[2], p)
     into = p["gravity"] * np.cos(p["slope"])
     if kind == "IMPACT":
@@ -73,7 +74,8 @@ def guard(kind: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
 
 
 def by_complex_steps(function: Any, y: Any, p: dict[str, Any], wrt: list[str]) -> tuple[Any, Any]:
-    """Derivatives of function(y, p) with respect to y and the inputs of p (0 for the start's)."""
+    """Derivatives of function(y, p) with respect to y and to the inputs in p; 0 for other
+    inputs."""
     columns = []
     for k in range(6):
         moved = y.astype(complex)

@@ -1,4 +1,4 @@
-"""The growth of changes along a motion's own arcs, by saltation matrices.
+"""The growth of changes along the arcs of a motion, computed with saltation matrices.
 
 Each arc starts in the state that the motion has after the event before it. The variational equation
 is integrated along the arc, and at an event (R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations
@@ -6,9 +6,9 @@ of Non-Smooth Mechanical Systems (2004), ch. 7)
 
     S+ = R_y S + (f+ - R_y f) g_y S / (g_y f),
 
-with derivatives by complex steps, those of the collision through its pieces. No differences are
-used. Columns become orthonormal at events; because a QR decomposition is unique, the place does not
-matter.
+Derivatives come from complex steps, also within the pieces of a collision, and never from
+differences. Columns are made orthonormal at events; since a QR decomposition is unique, the times
+at which this is done do not affect the result.
 """
 
 from typing import Any
@@ -60,7 +60,7 @@ def collided(y: Any, p: Any) -> Any:
 
 
 def _stretch(mode: str, side: int, y: Any, lasts: float, p: Any) -> tuple[Any, Any]:
-    """The state at the end of an arc, and its derivatives by that at the start, (6, 6)."""
+    """The state at the end of an arc, and its derivatives by the state at the start, (6, 6)."""
 
     def both(_: float, u: Any) -> Any:
         by_state, _ = by_complex_steps(lambda y, p: rates(mode, side, y, p), u[:6], p, [])
@@ -131,7 +131,7 @@ def _orthonormal(columns: Any) -> tuple[Any, Any]:
     """Gram-Schmidt, applied twice; a column that depends on earlier ones becomes 0, and its log
     -inf.
 
-    Dependent columns leave some 1e-12 of their size, by errors of the state at the event.
+    Some 1e-12 of a dependent column remains, because of errors of the state at the event.
     """
     basis, logs = np.zeros_like(columns), np.full(columns.shape[1], -np.inf)
     for j, column in enumerate(columns.T):

@@ -29,9 +29,9 @@ SLIDES = Scene(0.5, 1.5, friction=0.2, theta=1.4, omega=-3.7, x_dot=-2.2)
     ],
 )
 def test_growth_agrees_with_saltation_matrices(scene: Scene, end: float, kinds: set[str]) -> None:
-    """Of all columns; those that are lost are lost at the same events.
+    """All columns agree, and columns vanish at the same events.
 
-    Each part is known to 1e-11; later columns divide this error by their own size.
+    Each part is known to 1e-11; relative to later, smaller columns this error is larger.
     """
     motion = simulate(scene, [end])
     assert {event.kind.name for event in motion.events} == kinds
@@ -45,7 +45,7 @@ def test_growth_agrees_with_saltation_matrices(scene: Scene, end: float, kinds: 
 
 
 def test_growth_agrees_with_the_exact_orbit_while_it_is_known() -> None:
-    """The difference from the exact orbit in 60 digits is at most 64 roundings that have grown."""
+    """The difference from the exact orbit in 60 digits is at most 64 roundings times the growth."""
     for end in (9.0, 14.0, 18.0):
         motion = simulate(CHAOS, [end])
         found = math.exp(motion.growth("theta").log[-1, 0])
@@ -55,9 +55,9 @@ def test_growth_agrees_with_the_exact_orbit_while_it_is_known() -> None:
 
 
 def test_a_rounding_grows_to_a_thousandth_by_the_stated_time() -> None:
-    """At this time a neighbour that starts one rounding (1.1e-16) away has a distance between a
-    hundredth of and a hundred times 1e-3 of the body, because of its own roundings; 6 s earlier it
-    is still close."""
+    """At this time the angle of a neighbour that starts one rounding (1.1e-16) away differs by 1e-5
+    to 0.1 rad, since the neighbour has its own roundings. The difference is smaller 6 s earlier and
+    larger 6 s later."""
     motion = simulate(CHAOS, [26.0])
     until = simulate(CHAOS, [19.5]).growth().known_until
     near = simulate(CHAOS.replace(theta=np.nextafter(CHAOS.theta, 1)), [26.0])
@@ -79,7 +79,8 @@ def test_elastic_bounces_keep_volumes() -> None:
         (scenes.slip, 3.0, ["x_dot"]),  # STICK
         (scenes.drop, 2.0, ["x_dot", "z", "z_dot"]),  # lands rolling
         (Scene(2.0, 1.0, theta=0.5, z=2.5, x_dot=3.0, friction=0.02), 0.8, ["z", "z_dot"]),
-        (BOUNCES.replace(friction=1.0, restitution=0.5), 0.8, ["z_dot"]),  # the slip ends inside
+        # the slip ends during the impact
+        (BOUNCES.replace(friction=1.0, restitution=0.5), 0.8, ["z_dot"]),
         (scenes.jump, 2.0, []),
     ],
 )
@@ -110,8 +111,8 @@ def test_growth_ends_with_a_message_where_there_is_no_derivative() -> None:
     assert found.message in repr(found) and found.exponents.shape == (6,)
 
 
-def test_only_changes_of_angle_and_place_survive_summed_bounces() -> None:
-    """The angle and position of the disc keep their changes; hops are summed."""
+def test_only_changes_of_angle_and_position_remain_after_summed_bounces() -> None:
+    """The hops of the disc are summed. Three columns vanish, and the others remain."""
     disc = Scene(1.0, 1.0, z=2.0, omega=6.0, friction=0.2, restitution=0.5)
     found: Any = simulate(disc, 3.0).growth()
     assert found.message == "" and np.isneginf(found.log[-1, 3:]).all()

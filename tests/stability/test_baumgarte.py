@@ -45,7 +45,7 @@ def growth(method: str, alpha: float, beta: float, step: float) -> float:
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_feedback_on_a_circle_follows_the_stability_function(method: str) -> None:
     """The constraints of a circle are linear in the errors: each step multiplies f1 by R(-2 alpha
-    h) and (f2, f2') by R of their matrix. The error is 1e-6; the bound is 100 ulp of the
+    h) and (f2, f2') by R of their matrix. They start at 1e-6; the bound is 100 ulp of the
     coordinates, 2e-14, times the growth in the steps (and 1/h for a rate). Gains are below and
     above the limit."""
     step, steps = 0.01, 10

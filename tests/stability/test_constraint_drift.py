@@ -1,5 +1,5 @@
-"""Constraints that are only differentiated drift like t^2 by the truncation of each step.
-Projection and the index-2 system hold them at any time.
+"""Constraints that are only differentiated drift like t^2, because each step has a truncation
+error. Projection and the index-2 system satisfy the constraints at any time.
 """
 
 from typing import Any
@@ -20,10 +20,10 @@ DRIFTS = {
 
 @pytest.mark.parametrize(("scene", "method", "step", "last"), DRIFTS.values(), ids=DRIFTS)
 def test_residuals_grow_like_t_squared(scene: Scene, method: str, step: float, last: int) -> None:
-    """A step leaves the constraints by its truncation error in position and velocity, and the
-    equations keep second rates 0: errors grow like t in velocity and like t^2 in position. Slopes
-    are taken from 10 half turns on, while the gap stays below 1e-2; steps are powers of two, so
-    that knots are met exactly."""
+    """A step violates the constraints by its truncation error in position and velocity, and the
+    equations keep their second derivatives at 0: errors grow like t in velocity and like t^2 in
+    position. Slopes are taken from 10 half turns on, while the gap stays below 1e-2; steps are
+    powers of two, so that knots are met exactly."""
     spans = np.unique(np.geomspace(10, last, 10).round())
     found = envelopes(scene, spans, step, **kept_by("none", method=method, step=step))
     gap, position, velocity = (exponent(spans, missed) for missed in found)

@@ -1,7 +1,7 @@
 """Infinitely many bounces in a finite time (Zeno): a body dropped flat, e = 0.5.
 
 Bounce n takes 2 v e^n/g, all together v/g (1 + e)/(1 - e). A loop over events never passes that
-time, and equal steps sink into the ground; the package sums the rest of the series.
+time, and with equal steps the body sinks into the ground. The package sums the rest of the series.
 """
 
 import math

@@ -1,8 +1,8 @@
 """With friction just above or below the need of rolling, the grip holds or is lost for an instant.
 
-The need has a smooth maximum during the rise: it exceeds a friction that falls short by 10^-k over
-10^(-k/2) of the path. Beyond some k neither samples nor ends of steps show this; the certificate
-decides signs of polynomials and misses no such place.
+The need has a smooth maximum during the rise: if friction falls short of it by 10^-k, the need is
+larger than friction over 10^(-k/2) of the path. Beyond some k neither samples nor ends of steps
+show this; the certificate decides signs of polynomials and misses no such place.
 """
 
 import math

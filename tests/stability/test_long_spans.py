@@ -1,7 +1,7 @@
 """Phase errors of methods from one half turn to 1e9.
 
-An energy error that grows like t gives a phase error like t^2; a constant one gives t, drifting
-constraints t^3. The number of steps of a stepped motion grows with its length in any case.
+An energy error that grows like t gives a phase error like t^2. A constant energy error gives one
+like t, and drifting constraints one like t^3. The number of steps grows with the span in any case.
 """
 
 from typing import Any

@@ -44,10 +44,10 @@ BEYOND = [sliding(3.0, theta=0.9), sliding(3.0, theta=0.3), sliding(1.5), slidin
 
 @pytest.mark.parametrize("scene", BEYOND, ids=["3 at 0.9", "3 at 0.3", "1.5", "1.36"])
 def test_a_force_law_continues_with_nonsense_where_the_package_jams(scene: Scene) -> None:
-    """N is negative from the first instant, though gravity presses (c = g): the ground pulls, the
-    slip grows, and the body soon moves with more than twice its energy, mostly until numbers
-    overflow, with steps of either size. The package ends at that instant, with a sentence and
-    finite numbers."""
+    """N is negative from the first instant, although gravity presses the body down (c = g). The
+    ground pulls, the slip grows, and with steps of either size the body soon has more than twice
+    its energy; mostly the numbers overflow. The package ends the motion at the first instant, with
+    a message and finite numbers."""
     start = scene.initial_state
     state, mu = (start.theta, start.omega, start.x_dot), scene.friction
     at = support(start.theta, A, B)
@@ -106,9 +106,9 @@ def test_a_slide_jams_only_above_the_critical_friction(distance: float, mirrored
 
 @pytest.mark.parametrize("distance", [1e-13, 3e-14, 1e-14, 3e-15])
 def test_a_slide_that_starts_with_almost_no_contact_response_ends_at_once(distance: float) -> None:
-    """With B of a few ulp the impulse of N ends the slip before the body turns, whatever its spin.
-    It rolls from then on, as with ten times as large a B; its speed follows from the impulse
-    alone."""
+    """If B is a few ulp, the impulse of N ends the slip before the body turns, whatever its spin.
+    The body then rolls, as it does for a B ten times as large, at a speed that follows from the
+    impulse alone."""
     exact, where = critical()
     at = support(float(where), A, B)
     spin = (float(exact) * at.h - at.slope) / GYRATION2
@@ -129,8 +129,8 @@ def test_a_slide_that_starts_with_almost_no_contact_response_ends_at_once(distan
 
 
 def test_nothing_jams_below_the_critical_friction() -> None:
-    """None of 300 random starts of the 2:1 disc, of every kind, level and on slopes, jams at 1 -
-    1e-9 of the critical friction; some of them jam at three times this friction."""
+    """Of 300 random starts of the 2:1 disc, level and on slopes, none jams at 1 - 1e-9 of the
+    critical friction, and some jam at three times this friction."""
     jammed = {}
     for friction in (CRITICAL * (1 - 1e-9), 3 * CRITICAL):
         count = 0

@@ -28,7 +28,7 @@ FAIL: dict[str, dict[str, Any]] = STRAY | {
 
 
 def first_wrong(side: int, **how: Any) -> int | None:
-    """The first k at which a method may be wrong."""
+    """The first k at which a method is wrong, or None."""
     throws = ((k, throw(k, side)) for k in DISTANCES)
     wrong = (k for k, it in throws if rolls_over(it.omega, it.half, **how) != it.rolls_over)
     return next(wrong, None)
@@ -58,7 +58,7 @@ def test_every_stepped_method_is_wrong_close_enough_to_the_separatrix(name: str)
 
 
 def test_the_separatrix_error_of_rk4_follows_its_order() -> None:
-    """Steps of 0.02, 0.01 and 0.005 s lose energy on the way up like the step's fourth power."""
+    """The energy lost on the way up is proportional to the fourth power of the step."""
     steps = [0.02, 0.01, 0.005]
     shifts = [own_separatrix(method="rk4", step=step) for step in steps]
     slope = exponent(steps, shifts)

@@ -15,7 +15,7 @@ from rolling_ellipse import report
 from stability_laws import exponent, third
 
 TIP = math.pi / 2
-CLOSE = range(1, 9)  # exponents k of the distances 10^-k, in rad or as parts
+CLOSE = range(1, 9)  # exponents k of the distances 10^-k of theta from the tip, or of a/b from 1
 
 
 def slope(values: list[float], first: int = 3) -> float:
@@ -24,11 +24,12 @@ def slope(values: list[float], first: int = 3) -> float:
 
 
 def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
-    """1/sin(2 psi) and tan^2 theta give the distance to the power -3, with the lost terms; a circle
-    gives 1/(a - b), with a numerator that changes its sign near a/b = 1.003. The next order is the
-    distance itself: 1e-3 where the fits begin, and some 30 times the distance of the circle. With
-    all terms the value is zero over zero, but exists; its rounding grows like 1/distance (an ulp of
-    psi = pi/2 is 2.2e-16/10^-k of the distance, and tan^2 theta has it twice)."""
+    """At the tip 1/sin(2 psi) and tan^2 theta, with the lost terms, grow like distance^-3. Near a
+    circle the value grows like 1/(a - b), with a numerator that changes its sign near a/b = 1.003.
+    The relative errors of these laws are the distance itself, 1e-3 where the fits begin, and some
+    30 times the distance for the circle. With all terms the value has a limit of the form 0/0. Its
+    rounding error grows like 1/distance: an ulp of psi = pi/2 is 2.2e-16/10^-k of the distance, and
+    tan^2 theta contains this error twice."""
     at_tip = [third(TIP + 10.0**-k, 2.0, 1.0).printed for k in CLOSE]
     of_circle = [third(0.7, 1 + 10.0**-k, 1.0).printed for k in CLOSE]
     limit = third(TIP + 1e-5, 2.0, 1.0).complete

@@ -1,8 +1,8 @@
 """Explicit steps that are too large: growth of small rocking in runs agrees with theory.
 
 Small rocking is theta'' = -Omega^2 theta with Omega^2 = g (a^2 - b^2)/(b (k^2 + b^2)), and a step
-turns (theta, omega/Omega) by the angle and scales it by the magnitude of R(i y), y = Omega h: it is
-bounded up to the end of the stability interval on the imaginary axis.
+turns (theta, omega/Omega) by the angle and scales it by the magnitude of R(i y), y = Omega h:
+rocking is bounded up to the end of the stability interval on the imaginary axis.
 """
 
 import math
@@ -30,7 +30,7 @@ from stability_laws import (
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_steps_scale_the_amplitude_as_the_stability_function_predicts(method: str) -> None:
     """The amplitude after 200 steps is |R(i y)|^200 to 1e-8, for y from 0.2 up to where this power
-    is 10 (1e-5 rad: the nonlinear part is 1e-10 a step), except where it is below 1e-100."""
+    is 10 (at 1e-5 rad the nonlinear part is 1e-10 per step), except where it is below 1e-100."""
     worst = 0.0
     for y in np.linspace(0.2, 6.5, 64):
         factor = amplification(method, 1j * y)
@@ -58,8 +58,9 @@ def test_small_rocking_is_stable_up_to_the_limit(method: str) -> None:
 
 
 def test_the_amplitude_of_dopri5_grows_slowly_beyond_its_stability_interval() -> None:
-    """Beyond its interval dopri5 grows per step by 1.4e-6 at y = 1, 0.3 % at 1.5, 1 % at 1.73 and 3
-    % at 2. The other methods grow by 1 % within 0.5 % of their limits."""
+    """Beyond its interval the amplitude of dopri5 grows per step by 1.4e-6 at y = 1, 0.3 % at 1.5,
+    1 % at 1.73 and 3 % at 2. With the other methods it grows by 1 % within 0.5 % of their
+    limits."""
     for y, much in ((1.0, 1.389e-6), (1.5, 3.018e-3), (2.0, 3.185e-2)):
         assert amplification("dopri5", 1j * y) - 1 == pytest.approx(much, rel=1e-3)
     by_a_hundredth = {
@@ -87,8 +88,8 @@ def test_gauss_keeps_the_amplitude_until_its_stages_fail(stages: int) -> None:
     times the spectral radius of the matrix A, one over the nearest pole of R, which is the Pade
     approximant of e^z: beyond the pole it cannot converge, and the motion ends with STEP_TOO_LARGE.
     Up to half of it the amplitude is constant to 1e-9; a motion that is given up keeps its
-    amplitude. In between iterations hardly converge, and a stage is accepted with 1e-11 of an angle
-    of 1, a hundred thousandth of this amplitude, in each of 300 steps."""
+    amplitude. In between, iterations hardly converge, and stages are accepted with errors of 1e-11
+    rad, a hundred thousandth of the amplitude, in each of 300 steps."""
     denominator = [
         (-1) ** k * math.comb(stages, k) * math.factorial(2 * stages - k)
         for k in range(stages, -1, -1)
@@ -107,9 +108,9 @@ def test_gauss_keeps_the_amplitude_until_its_stages_fail(stages: int) -> None:
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
 def test_only_conserving_the_energy_keeps_large_multiplier_steps_bounded(name: str) -> None:
-    """rk4 in five coordinates without feedback has the limit of rolling, sqrt 8, below the 3 here;
-    feedback of 10/s is lost before. With the energy 300 steps of any size up to 10 keep the
-    amplitude to a thousandth, the effect of 1e-12 of the energy, its last digits."""
+    """rk4 in five coordinates without feedback has the limit of rolling, sqrt 8, which is below the
+    3 tested here; with a feedback of 10/s the limit is lower. If the energy is conserved, 300 steps
+    of any size up to 10 keep the amplitude to a thousandth, the effect of 1e-12 of the energy."""
     how = kept_by(name, method="rk4")
     if name == "projection+energy":
         for y in (0.75, 3.0, 10.0):

@@ -25,7 +25,7 @@ def test_the_number_of_controlled_steps_grows_only_logarithmically(method: str) 
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
 def test_the_cost_of_five_coordinates_grows_slower_than_the_root_of_a_over_b(name: str) -> None:
-    """r and psi change fast over the flat side, and count in the control of the error."""
+    """r and psi change fast over the flat side, and the error control includes them."""
     power = exponent(RATIOS[2:], [steps_taken(ratio, **kept_by(name)) for ratio in RATIOS[2:]])
     told(f"{name}: as a power {power:.3f}")
     assert power < 0.5

@@ -132,7 +132,7 @@ def test_every_run_with_a_loss_gives_a_warning_and_no_other_does() -> None:
         run = losses.drawn(seed)
         motion, said = advice(run.scene, [0.0, run.t_end], raise_on_failure=False, **run.how)
         stopped = motion.status not in (rl.Status.COMPLETED, rl.Status.VALIDITY_LOST)
-        gains = any("is unstable with the gains" in text for text in said)  # will be lost
+        gains = any("is unstable with the gains" in text for text in said)  # soon lost
         if stopped or gains or not 0 < motion.stats["steps"] <= 3000:
             continue
         found = losses.lost(run, motion)
@@ -156,7 +156,7 @@ def test_projection_hides_no_step_that_is_too_large() -> None:
     assert "take smaller rtol and atol" in said
 
 
-def test_a_warning_comes_with_the_loss_and_not_before() -> None:
+def test_a_warning_is_given_if_and_only_if_a_loss_exceeds_its_limit() -> None:
     """Coarse steps lose the constraints or the energy, fine steps do not."""
     for how, quantity, least in (
         (DRIFTING, "constraints", 1e-3),

@@ -56,7 +56,7 @@ def require_bits(one: rl.EventTable, other: rl.EventTable) -> None:
 def test_a_table_equals_the_objects_bit_for_bit() -> None:
     """Objects compute their values one by one, in the core and in plain floats."""
     for motion in motions():
-        objects = Events(tuple(motion.events))  # of unknown origin: their table reads them
+        objects = Events(tuple(motion.events))  # their table is read from the objects
         assert not vars(objects)
         require_bits(motion.events.table, objects.table)
 
@@ -70,7 +70,7 @@ def test_the_motions_have_events_of_all_kinds() -> None:
     hidden = [motion._solution.turns.size for motion in motions()]
     assert hidden[2] > 0 and not set(motions()[2]._solution.turns) & set(tables[2]["t"])
     reasons = [*chain.from_iterable(each["reason"] for each in tables)]
-    assert len({*reasons}) == len(kinds) + 1  # infinite friction has a slip of its own
+    assert len({*reasons}) == len(kinds) + 1  # slips at infinite friction differ
     lost = np.concatenate([each["energy_lost"] for each in tables])
     assert (lost > 0).any() and (lost == 0).any() and not (lost < 0).any()
 

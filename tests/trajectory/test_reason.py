@@ -1,4 +1,4 @@
-"""A reason states what happens, then what is proved."""
+"""The reason of a motion states first what happens and then what is proved."""
 
 import math
 import re

@@ -1,6 +1,6 @@
 """Each array of a Trajectory agrees with its definition, and residuals do not grow.
 
-The tests compute forces by Newton's law and the geometry in long double. tests/multipliers judges
+The tests compute forces by Newton's law and the geometry in long double. tests/multipliers tests
 the multipliers.
 """
 
@@ -56,7 +56,7 @@ def test_close_detects_a_difference_of_ten_ulp() -> None:
 
 
 class Own(list[float]):
-    """A list whose methods may behave otherwise."""
+    """A list whose methods may behave differently."""
 
 
 @pytest.mark.parametrize(
@@ -191,7 +191,7 @@ def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
     noise = (16 * EPS * largest + per_theta * theta_grain) / step
     off, allowed = np.abs(near - rate)[fast], (np.abs(far - near) + noise)[fast]
     assert np.all(off <= allowed)
-    # the bound is sharp
+    # the bound is tight
     assert np.median(allowed) <= 1e-5 * np.max(np.abs(rate)) + 1e-9 * largest
 
 

@@ -78,7 +78,7 @@ def test_scene_at_takes_the_state_of_a_rolling_motion() -> None:
     assert later.initial_state.mode is Mode.ROLLING
 
 
-def test_scene_at_accepts_another_impulse() -> None:
+def test_a_scene_from_scene_at_accepts_another_impulse() -> None:
     """Another impulse changes omega: m D (omega+ - omega-) = Jx (h + dz) + Jz (h' - dx)."""
     whole = simulate(rl.scenes.report, 6.0)
     later = whole.scene_at(2.0)

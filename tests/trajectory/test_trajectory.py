@@ -111,7 +111,7 @@ def test_rolling_is_valid_until_its_law_fails(scene: Scene) -> None:
     assert short.status is Status.COMPLETED and short.valid_until == end
 
 
-def test_a_body_that_cannot_start_to_roll_is_valid_until_zero() -> None:
+def test_rolling_that_cannot_start_is_valid_until_zero() -> None:
     with pytest.warns(ValidityWarning):
         trajectory = simulate(Scene(2.0, 1.0, theta=0.5, friction=0.01), 2.0, model="rolling")
     assert trajectory.valid_until == 0 and trajectory.t.size == 1001
@@ -225,7 +225,7 @@ def test_reason_and_stats_are_computed_on_demand() -> None:
 
 
 def test_names_of_any_text_type_become_plain_strings() -> None:
-    """Whoever reads a pickle may not have the other type."""
+    """The process that reads a pickle may not have the other type."""
 
     class Mine(str):
         def __reduce__(self) -> Any:

@@ -34,8 +34,8 @@ def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Float
 
 
 def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float]) -> int:
-    """Compare the times with dense samples, so that none is missed or invented; return their
-    number."""
+    """Check against dense samples that no passage is missed or invented; return the number of
+    passages."""
     tables = [all_times(motion, name, values, direction) for direction in (0, 1, -1)]
     for value, found, rising, falling in zip(values, *tables, strict=True):
         assert np.all(np.diff(found) > 0) and np.all((found >= 0) & (found <= motion.t_end))
@@ -45,7 +45,7 @@ def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float])
         times, sign = dense.t[clear], np.sign(less[clear])
         rises, falls = (np.searchsorted(t, times, side="right") for t in (rising, falling))
         assert np.array_equal(np.diff(rises) - np.diff(falls), np.diff(sign) / 2), (name, value)
-        for t in np.concatenate([rising, falling]):  # times 4 ulp apart are one
+        for t in np.concatenate([rising, falling]):  # up to 4 ulp apart, times are merged
             assert np.abs(found - t).min() <= 8 * EPS * t
         jumps = np.isin(found, times_of_events(motion)) if name == "omega" else np.zeros(found.size)
         smooth = found[~jumps.astype(bool)]
@@ -106,7 +106,7 @@ def test_passages_of_a_rocking_body_follow_its_period() -> None:
 
 def test_passages_of_the_reports_ellipse_follow_its_turns() -> None:
     """From flat with 3.2 rad/s the body stands upright a quarter period after the start and once
-    per half turn. The contact and the centre then have moved by known parts of the perimeter."""
+    per half turn. In a full turn the contact and the centre move by the perimeter."""
     motion = simulate(rl.scenes.report, 30.0)
     half = rl.period(motion.scene) / 2
     tips = np.arange(half / 2, 30.0, half)
@@ -168,8 +168,8 @@ def test_a_constant_value_counts_only_where_it_starts() -> None:
 
 def test_a_turning_point_at_the_start_recurs_every_period() -> None:
     """A body pushed from its equilibrium in the well of a slope, so gently that its inertia is
-    constant to rounding, is fastest there: each period after the start, and between two passages of
-    1e-9 less, sqrt(8e-9)/(2 pi) = 1.4e-5 of a period apart."""
+    constant to rounding, is fastest at the start and after each period. It passes a speed that is
+    smaller by 1e-9 twice, sqrt(8e-9)/(2 pi) = 1.4e-5 of a period apart."""
     incline = math.tan(0.1)
     lying = math.atan(2 * incline / (3 + math.sqrt(9 - 16 * incline**2)))  # h' = h tan(slope)
     scene = Scene(2.0, 1.0, theta=lying, omega=1e-8, slope=0.1)
@@ -186,7 +186,7 @@ def test_a_turning_point_at_the_start_recurs_every_period() -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.filterwarnings("error::rolling_ellipse.CompletenessWarning")
 def test_a_body_far_down_a_slope_passes_its_start_only_once_more() -> None:
-    """The body passes its start once more and never again; heights are passed too often."""
+    """The body climbs, returns and passes its start; it passes heights too often to list them."""
     motion = simulate(Scene(2.0, 1.0, slope=0.1, omega=-8.0), [0.0, 1e6], model="rolling")
     start, again = motion.when(theta=0.0)
     assert start == 0 and motion.when(x=0.0) == pytest.approx([0.0, again], rel=1e-12)
@@ -227,8 +227,8 @@ def test_touches_between_two_evaluations_of_a_function_are_found() -> None:
 
 
 def test_close_zeros_are_found_anywhere_in_a_motion() -> None:
-    """Between the two zeros is the only turning point of the function; one part of the search has
-    all three, wherever they are."""
+    """The only turning point of the function is between its two zeros. One interval of the search
+    contains all three, wherever they are."""
     motion = simulate(Scene(2.0, 1.0, theta=0.5, friction=1.0), 10.0)
     for first in np.linspace(0.01, 9.95, 43):
         with pytest.warns(CompletenessWarning):
@@ -295,7 +295,7 @@ def test_the_largest_double_is_never_passed() -> None:
 
 
 def test_too_little_memory_for_the_times_is_a_memory_error() -> None:
-    """Depending on the limit there is memory for none, some or all of 100,000 arrays."""
+    """The limits allow memory for none, some or all of the 100,000 arrays."""
     program = """
         import resource, numpy as np, rolling_ellipse as rl
         motion = rl.simulate(rl.scenes.rolling, 1.0)

@@ -1,6 +1,6 @@
 """Runs of `work_precision`: contenders, measurements, refusals, and runs left out.
 
-No test depends on measured durations: only on the choice of timed runs, and on known errors.
+No test depends on measured durations. The tests check which runs are timed, and known errors.
 """
 
 import math
@@ -82,8 +82,8 @@ def test_an_error_is_measured_at_its_true_size(off: float) -> None:
     assert run.errors.energy > 0.01 * off  # h' is not 0 at the end
 
 
-def test_each_component_counts_in_its_own_unit() -> None:
-    """omega is judged relative to its largest value, x relative to the long semi-axis."""
+def test_errors_of_omega_and_x_are_relative_to_their_own_sizes() -> None:
+    """The error of omega is relative to its largest value, that of x to the long semi-axis."""
     exact = simulate(ROTATION, np.linspace(0, END, 4001))
 
     def reference(t: Any) -> tuple[Any, ...]:
@@ -191,14 +191,14 @@ def test_the_suitable_method_runs_without_being_named(scene: Scene, first: str) 
 
 
 def test_an_inadequate_model_has_no_answer() -> None:
-    """Exact rolling has no answer, rather than a slow one, where the body slips."""
+    """Exact rolling has no answer, rather than a slow one, if the body slips."""
     scene = SUITABLE["slips"][0]
     exact = only(work_precision(scene, 1.0, **QUICK), "exact")
     assert exact.status == "VALIDITY_LOST" and "rolling is valid until" in exact.reason
     assert math.isnan(exact.errors.final) and math.isnan(exact.time)
 
 
-def test_mappings_may_hold_any_argument_of_simulate() -> None:
+def test_mappings_may_contain_any_argument_of_simulate() -> None:
     methods = [{"name": "two", "method": "gauss", "stages": 2}, {"method": "gauss", "stages": 4}]
     found = work_precision(ROTATION, END, methods=methods, rounds=1, steps=[0.05])
     assert found.names == ("two", "gauss/4")
@@ -293,7 +293,7 @@ SET_UPS = {
 
 @pytest.mark.parametrize("how", SET_UPS.values(), ids=SET_UPS)
 def test_set_up_time_leaves_no_run_out(how: dict[str, float], clock: Clock) -> None:
-    """A set-up of 4 s does not count in the 2 s for all runs: each run of 1 us is made."""
+    """A set-up of 4 s does not count towards the 2 s for all runs, so every run of 1 us is made."""
     found = raced(Timed("late", clock, **how), tolerances=LADDER, max_seconds=2.0)
     late = [run for run in found.runs if run.name == "late"]
     assert [run.status for run in late] == ["COMPLETED"] * len(LADDER)
@@ -386,7 +386,7 @@ def test_costly_contenders_take_part_in_fewer_rounds(clock: Clock) -> None:
 # ------------------------------------------------------------------------------ judged times
 
 
-def test_a_contender_with_only_the_right_end_does_not_win() -> None:
+def test_a_contender_that_is_right_only_at_the_end_does_not_win() -> None:
     """Wrong samples count as their error; samples that are NaN are no answer."""
     rubbish = Peer("rubbish", samples=lambda t, *_: (0 * t + 32, 0 * t, 0 * t))
     nothing = Peer("nothing", samples=lambda t, *_: (t * math.nan, 0 * t, 0 * t))

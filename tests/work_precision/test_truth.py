@@ -16,8 +16,8 @@ ROWS = [row for row in table.rows("rolling_reference") if 0 < float(row["t"]) < 
 
 
 def test_the_attainable_error_is_that_of_rounding_the_inputs() -> None:
-    """The attainable error is the largest of the table's units of theta, omega and x: the same sums
-    over the inputs, by differences that err by a few per cent."""
+    """The attainable error is the largest of the table's units of theta, omega and x. Both are sums
+    over the inputs; the attainable error uses differences that err by a few per cent."""
     ratios = []
     for row in ROWS[::3]:
         numbers: dict[str, Any] = {name: float(row[name]) for name in ("a", "b", "gravity")}
@@ -36,15 +36,15 @@ def test_the_attainable_error_is_that_of_rounding_the_inputs() -> None:
 
 
 def test_a_body_at_rest_may_be_raced_for_longer_than_it_could_swing() -> None:
-    """A body at rest needs no period; a body slightly off equilibrium could swing for at most 1e15
-    swings."""
+    """A body at rest has no period. Only bodies that swing or turn are limited to 1e15 swings."""
     found = Judge(Scene(2.0, 1.0, friction=1.0), 1e206, 4, None).reference
     assert found.name == "exact rolling" and math.isfinite(found.attainable)
 
 
 def test_less_accuracy_is_attainable_near_the_separatrix() -> None:
     """Near the tip differences grow as e^(lambda t), and a half turn takes just over ln(1/d)/lambda
-    at a relative distance d from the speed that just rolls over: 0.9 of it costs d^-0.9."""
+    at a relative distance d from the speed that just rolls over. Over 0.9 of a half turn errors
+    therefore grow by a factor of d^-0.9."""
     speed = math.sqrt(2 * 9.81 / 2.25)  # roll-over speed of uniform discs, 2:1, physics (44)
     found = []
     for k in (3, 6, 9, 12):
