@@ -71,6 +71,7 @@ colors : sequence of matplotlib colours, optional
 -------
 {drawn}
     The artists of the picture.
+
 Raises
 ------
 ValueError
