@@ -3,7 +3,8 @@
     pictures   01.png to 10.png, and 07b.png
     tasks      the marked parts of the sheets, from the questions and data of `course`
 
-Arguments select steps; without arguments both steps run.
+Arguments select steps; without arguments both steps run. `answers SEED` prints the right answers
+for a seed instead.
 """
 
 import math
@@ -423,6 +424,13 @@ def tasks() -> None:
         path.write_text(course._sheets.filled(text, None), encoding="utf-8")
 
 
+def answers(seed: int) -> None:
+    for task in course.tasks(seed):
+        print(f"{task.number:5} {course._answers.answer(task):12.6g} {task.unit}")
+
+
 if __name__ == "__main__":
+    if sys.argv[1:2] == ["answers"]:
+        sys.exit(answers(int(sys.argv[2])))
     for step in sys.argv[1:] or ["pictures", "tasks"]:
         {"pictures": pictures, "tasks": tasks}[step]()

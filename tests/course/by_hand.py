@@ -27,11 +27,13 @@ THROWN = {
 NOISE = np.array([[5e-4], [5e-4], [0.01]])
 SOLID = (0.035**2 + 0.025**2) / 4  # k^2 of the filmed body, a uniform disc
 USUAL = (
-    "sign", "degrees", "DEGREES", "inertia", "friction", "angle", "small", "torque", "freedom",
+    "sign", "degrees", "Degrees", "dEGREES", "DEGREES", "inertia", "friction", "angle", "small",
+    "torque", "point", "weight", "slip", "freedom",
 )  # fmt: skip
 PLAIN = dict.fromkeys((*STATE, "slope", "restitution", "jx", "jz", "dx", "dz"), 0.0)
 PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # friction that prevents any slip
 PLAIN |= {"torque": False}  # True for the mistake of setting the moment about C to I_C omega_dot
+PLAIN |= {"posed": 1.0, "spun": 1.0}  # factors of theta and omega t in the air
 
 
 @cache
@@ -121,9 +123,18 @@ class Given(SimpleNamespace):
         return float(push / self.about_contact(self.theta)) if self.friction else self.hit()[4]
 
     def landed(self) -> Any:
+        start, rate = self.posed * self.theta, self.spun * self.omega
         t = brentq(lambda t: self.z + self.z_dot * t - self.gravity * t**2 / 2
-                   - self.at(self.theta + self.omega * t)[0], 0, 1)  # fmt: skip
-        return self.but(theta=self.theta + self.omega * t, z_dot=self.z_dot - self.gravity * t)
+                   - self.at(start + rate * t)[0], 0, 1)  # fmt: skip
+        return self.but(theta=start + rate * t, z_dot=self.z_dot - self.gravity * t)
+
+    def slid(self) -> float:
+        """Angular velocity after an impact with Lambda_x = -mu s Lambda_z from start to end."""
+        h, lead, _ = self.at(self.theta)
+        along = -self.friction * math.copysign(1, self.x_dot - h * self.omega)
+        arm = (h * along + lead) / self.inertia
+        up = -(1 + self.restitution) * (self.z_dot - lead * self.omega)
+        return float(self.omega - arm * up / (1 / self.mass + lead * arm))
 
     def frames(self, t: Any) -> Any:
         """Positions and angles of a thrown body that hits the ground once."""
@@ -210,7 +221,7 @@ TRUE: dict[str, Any] = {
     "6.2": lambda d: d.x_dot / d.friction / d.gravity / (1 + d.a**2 / d.gyration2),
     "6.3": lambda d: rates("SLIDING", 1, [0, 0, d.theta, d.x_dot, 0, d.omega], vars(d))[5],
     "6.4": lambda d: brentq(lambda flat: d.needed(flat) - d.friction, d.speed(0, d.a), 12),
-    "7.1": lambda d: math.sqrt(max(0, -d.gravity / d.at(d.theta)[2])),
+    "7.1": lambda d: math.sqrt(abs(d.gravity / d.at(d.theta)[2])),
     "7.2": lambda d: -d.landed().z_dot / d.gravity, "7.4": lambda d: d.landed().hit()[4],
     "7.3": lambda d: d.mass * d.gravity * d.at(d.landed().theta)[0]
     + np.dot([d.mass, d.mass, d.inertia], np.square(d.landed().hit()[2:])) / 2,
@@ -223,6 +234,9 @@ TRUE: dict[str, Any] = {
 WRONG: dict[tuple[str, str], Any] = {  # formulas: small angles, and M_C = I_C omega_dot
     ("small", "2.4"): lambda d: 2 * math.pi / TRUE["2.3"](d),
     ("small", "3.5"): Given.small_rocking,
+    ("point", "1.3"): lambda d: TRUE["1.4"](d), ("point", "1.4"): lambda d: TRUE["1.3"](d),
+    ("weight", "3.1"): lambda d: d.mass * d.gravity,
+    ("slip", "7.4"): lambda d: d.landed().slid(),
     ("freedom", "10.5"): lambda d: fitted(d) * 31 / 39,
     **{("torque", number): lambda d: TRUE[d.number](d.but(torque=True))
        for number in ("3.2", "3.3", "4.3", "6.4", "9.1", "9.2")},
@@ -252,8 +266,8 @@ def film_fit(
 
 @cache
 def answer(number: str, made: tuple[str, ...] = (), seed: int | None = None) -> float:
-    """The answer with mistakes. DEGREES means that the answer is in degrees, and `degrees` that the
-    data are inserted in degrees."""
+    """The answer with mistakes. DEGREES means an answer in degrees, `degrees` data in degrees,
+    Degrees a calculator in degree mode, and dEGREES such a calculator with only theta converted."""
     if made and made[0].startswith("task"):
         return answer(made[0][5:], (), seed)
     task, of, factor = tasks_of(seed)[number], TRUE[number], 1.0
@@ -266,6 +280,14 @@ def answer(number: str, made: tuple[str, ...] = (), seed: int | None = None) -> 
             factor *= DEGREE
         elif name == "degrees":
             changes |= {k: v * DEGREE for k, v in task.data.items() if k in ("theta", "slope")}
+        elif name == "Degrees" and number not in ("2.4", "3.5", "9.1", "9.2"):
+            if "z" in task.data:
+                changes |= {"posed": 1 / DEGREE, "spun": 1 / DEGREE}
+            else:
+                changes |= {k: v / DEGREE for k, v in task.data.items() if k in ("theta", "slope")}
+            factor *= DEGREE if number in ("1.3", "1.4") and "theta" in changes else 1
+        elif name == "dEGREES" and "z" in task.data:
+            changes |= {"spun": 1 / DEGREE}
         elif name == "inertia":
             changes["gyration2"] = 2 * Given(number, seed).gyration2
         elif name == "friction" and number in ("5.1", "5.2", "5.3", "5.4", "7.4", "8.6"):

@@ -36,6 +36,28 @@ def test_a_class_is_marked_line_by_line() -> None:
     assert "'twenty'" in marked.refused[6] and "8, as in earlier lines" in marked.refused[7]
 
 
+def test_lines_with_too_many_fields_or_without_a_name_are_refused() -> None:
+    """A decimal comma without quotes is a field too many; empty fields at the end are not."""
+    right = answer("3.1", (), 7)
+    rows = (
+        "A,7,3.1,19,16",
+        ",7,3.1,19",
+        "  ,7,3.1,19",
+        f"A,7,3.1,{right},,",
+        "A,,3.1,19",
+        "B,,3.1,1",
+    )
+    marked = course.mark_table(table(*rows, "B,7,3.1,1"))
+    assert marked.points == {"A": 2, "B": 0}
+    assert marked.refused == {
+        2: "line must have 4 fields, got 5",
+        3: "student must be a name, got none",
+        4: "student must be a name, got none",
+        6: "seed must be 7, as in earlier lines, got none",
+        8: "seed must be none, as in earlier lines, got 7",
+    }
+
+
 @pytest.mark.parametrize("mark", [",", ";", "\t"])
 def test_tables_of_spreadsheets_are_read(mark: str, tmp_path: Path) -> None:
     """Spreadsheets write other separators, decimal commas, minus signs (U+2212) and byte order

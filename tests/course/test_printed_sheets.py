@@ -39,6 +39,32 @@ def test_the_teachers_page_has_right_answers() -> None:
         assert course.mark(number, float(text.replace("−", "-"))), number
 
 
+def test_the_marks_name_the_usual_mistakes_of_the_teachers_page() -> None:
+    """Each number after "Often", up to the end of its item, and each after a semicolon."""
+    text = (FOLDER / "teacher.md").read_text(encoding="utf-8")
+    items = re.findall(r"^\* \*\*(\d+\.\d)\*\*(.*?)(?=^\*|^#|\Z)", text, re.MULTILINE | re.DOTALL)
+    shown = re.compile(r"(?:^|;)\s+\+?(−?\d+\.?\d*)")
+    found = [(number, wrong.replace("−", "-")) for number, item in items
+             for wrong in shown.findall(item.partition("Often")[2])]  # fmt: skip
+    assert len(found) > 15
+    for number, wrong in found:
+        assert course.mark(number, float(wrong)).mistake not in ("none", "other"), (number, wrong)
+
+
+def test_friction_behind_the_tip_points_as_sheet_3_states() -> None:
+    """Just behind the tip the sign of F = m (h omega_dot + h' omega^2) changes at that speed."""
+    text = (FOLDER / "03_normal_and_friction_force.md").read_text(encoding="utf-8")
+    shown = re.search(r"body ([\d.]+) rad/s \(([\d.]+) rad/s when flat\)", text)
+    body: Any = Given("4.1")
+    square = body.a * body.gravity / (body.gyration2 + body.a**2 - body.b**2)
+    flat = body.about_contact(math.pi / 2) * square + 2 * body.gravity * (body.a - body.b)
+    both = math.sqrt(square), math.sqrt(flat / body.about_contact(0))
+    assert shown and [float(v) for v in shown.groups()] == pytest.approx(both, abs=0.005)
+    for share in (0.99, 1.01):
+        force = body.rolling(math.pi / 2 + 1e-3, share * both[0])[2]
+        assert math.copysign(1, force) == math.copysign(1, 1 - share)
+
+
 def test_the_example_of_sheet_7_is_right() -> None:
     """The contact slips until v = 0 and then sticks. Compression ends at u = 0. The end of
     restitution follows from the works, which are areas in the diagram of u over the impulse."""

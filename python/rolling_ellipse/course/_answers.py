@@ -124,8 +124,9 @@ _FORMULAS: dict[str, Formula] = {
     "event": lambda s, d, name: getattr(simulate(s, 5.0).events[0], name),
     "rest": lambda s, d, name: max((event.t for event in simulate(s, 20.0).events), default=0.0),
     "after": lambda s, d, name: getattr(simulate(s, 5.0).events[0].state_after, name),
-    "leave": lambda s, d, name: max(
-        0.0, -s.gravity / geometry.support_curvature(s.theta, a=s.a, b=s.b)) ** 0.5,
+    "leave": lambda s, d, name: abs(
+        s.gravity / geometry.support_curvature(s.theta, a=s.a, b=s.b)) ** 0.5,
+    "rolls": lambda s, d, name: rolling_equation(s)(0.0, [s.theta, s.omega])[1],
     "impacts": _impacts,
     "runs": lambda s, d, name: runs(s, d, name, rolling_equation(s)),
     "feedback": lambda s, d, name: _core.feedback_growth(Settings(

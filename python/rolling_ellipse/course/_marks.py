@@ -28,13 +28,20 @@ _BY_HAND = 3  # number of tolerances within which an answer from the film is a g
 class Mark:
     """The mark of an answer, with a sentence; its truth value is whether the answer is right.
 
-    The mistake is "none", "sign", "degrees", "inertia" (k^2 twice too large), "friction" (neglected
-    in a blow or an impact), "angle" (theta = 0), "small" (formula for small angles), "torque"
-    (I_C omega_dot about the contact), "freedom" (chi^2 divided by the number of data), "task 4.1"
-    (the answer to that task), "by hand" (an estimate), "per mille" (nearly right) or "other". It is
-    "sign and inertia" if both mistakes were made, and "angle or task 4.1" if either explains the
-    answer. `points` are all points of the task if the answer is right, and half of them, rounded
-    down, if a single mistake other than "task 4.1" and "other" explains it.
+    Attributes
+    ----------
+    mistake : str
+        "none", "sign", "degrees", "inertia" (k^2 twice too large), "friction" (neglected in a blow
+        or an impact), "angle" (theta = 0), "small" (formula for small angles), "torque"
+        (I_C omega_dot about the contact), "point" (path of the centre for that of the contact, or
+        vice versa), "weight" (N = m g), "slip" (Lambda_x = -mu s Lambda_z in the whole impact),
+        "freedom" (chi^2 divided by the number of data), "task 4.1" (the answer to that task),
+        "by hand" (an estimate), "per mille" (nearly right) or "other". It is "sign and inertia" if
+        both mistakes were made, and "angle or task 4.1" if either explains the answer.
+    points : int
+        All points of the task if the answer is right. If a single mistake other than "task 4.1" and
+        "other" explains it, half of them, rounded up, but none in a task of one point. "by hand"
+        and "per mille" cost one point, and nothing in a task of one point.
 
     Examples
     --------
@@ -42,7 +49,7 @@ class Mark:
     >>> mark.right, mark.mistake, mark.points
     (True, 'none', 2)
     >>> print(rl.course.mark("3.2", 1.91).sentence)
-    The sign is wrong: check in which directions x, z and theta (clockwise) increase.
+    The sign is wrong: check which direction is positive, and whether the answer can be negative.
     Wrong moment of inertia: k^2 is twice too large. (a^2 + b^2)/4 belongs to a uniform
     elliptic plate or cylinder.
     """
@@ -143,8 +150,9 @@ def _key(task: str, seed: int | None, measured: str | None) -> Key:
         sentence = " Or: ".join(map(" ".join, words)).format(within=1e2 * allowed / abs(right))
         if task[0] == "8":
             sentence += f" ({'Synthetic' if measured is None else 'Measured'} impacts.)"
-        half = any(len(names) == 1 and names[0] in says and names != ("other",) for names in ways)
-        points = of.points if ways == [("none",)] else of.points // 2 * half
+        cost = {"none": 0, nearly: of.points > 1, "other": of.points}
+        lost = [cost.get(n, max(1, of.points // 2)) for n, *more in ways if n in says and not more]
+        points = of.points - min(lost, default=of.points)
         name = " or ".join(" and ".join(names) for names in ways)
         return Mark(task, name == "none", name, sentence, points)
 
@@ -167,7 +175,8 @@ def _known(
         raise ValueError(f"{FILE} must name a table of {wanted}, got {measured!r}")
     known: list[tuple[tuple[str, ...], float]] = [((), right)]
     mistakes = usual(of)
-    for made in (*combinations(mistakes, 1), *combinations(mistakes, 2)):
+    pairs = [(m, n) for m, n in combinations(mistakes, 2) if not (m.name == n.name and n.data)]
+    for made in (*combinations(mistakes, 1), *pairs):
         data = {name: value for mistake in made for name, value in mistake.data.items()}
         formula = next((mistake.formula for mistake in made if mistake.formula), None)
         value = math.prod(mistake.factor for mistake in made) * answer(of, data, formula)

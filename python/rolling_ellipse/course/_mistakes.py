@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import geometry
 from .._ask.scene import Scene
+from .._verbs.simulate import simulate
 from ._answers import Formula, fitted, runs, thresholds
 from ._tasks import Task, sheet_of
 
@@ -24,17 +25,25 @@ class Mistake(NamedTuple):
 
 _BLOWS = ("5.1", "5.2", "5.3", "5.4", "7.4", "8.6")  # blows and impacts with friction
 _RESTS = ("2.2", "2.4", "3.5")  # releases from rest: at theta = 0 the body would not move
+_STEPPED = ("2.4", "3.5", "9.1", "9.2")  # programs, which have no key for degrees
+_RADIAN = 180 / math.pi
 
 
 def usual(of: Task) -> list[Mistake]:
     """Return the mistakes that are possible in a task, as wrong data, a formula, or a factor."""
-    number, data, radian = of.number, of.data, 180 / math.pi
+    number, data = of.number, of.data
     a, b, mass = (data.get(name, 1.0) for name in ("a", "b", "mass"))
-    angles = {name: radian * v for name, v in data.items() if name in ("theta", "slope")}
+    angles = {name: v for name, v in data.items() if name in ("theta", "slope")}
+    turn = {"omega": data["omega"] / _RADIAN} if "z" in data else {}  # of a body in the air
+    small = {name: v / _RADIAN for name, v in angles.items()} | turn
+    fall = _landed if number in ("7.3", "7.4") else None
+    scale = _RADIAN if number in ("1.3", "1.4") else 1.0  # of integrals over theta
     mistakes = [
         (True, Mistake("sign", {}, factor=-1.0)),
-        (bool(angles), Mistake("degrees", angles)),
-        ("rad" in of.unit, Mistake("degrees", {}, factor=radian)),
+        (bool(angles), Mistake("degrees", {name: v * _RADIAN for name, v in angles.items()})),
+        (bool(angles) and number not in _STEPPED, Mistake("degrees", small, fall, scale)),
+        (bool(turn), Mistake("degrees", turn, fall)),
+        ("rad" in of.unit, Mistake("degrees", {}, factor=_RADIAN)),
         (sheet_of(number) != "10", Mistake("inertia", {"inertia": mass * (a**2 + b**2) / 2})),
         (number in _BLOWS, Mistake("friction", {"friction": 0.0})),
         ("theta" in data and number not in _RESTS, Mistake("angle", {"theta": 0.0})),
@@ -91,6 +100,17 @@ def _small(s: Scene, d: dict[str, Any], name: str) -> float:
     return half * (2 if name == "period" else math.ceil((abs(s.theta) - held) / (2 * held)))
 
 
+def _landed(s: Scene, d: dict[str, Any], name: str) -> float:
+    """Return the answer after an impact, if angles in the air are too small by pi/180.
+
+    The body is placed just above the contact, with the right angular velocity.
+    """
+    hit, turn = simulate(s, 5.0).events[0].state_before, s.omega * _RADIAN
+    near = s.replace(theta=hit.theta, omega=turn, z=hit.z + 1e-9, z_dot=hit.z_dot)
+    after = simulate(near, 1.0).events[0]
+    return after.energy_after if name == "energy_after" else after.state_after.omega
+
+
 def _doubled(s: Scene, d: dict[str, Any], name: str) -> float:
     return fitted(d["seed"], doubled=True)[0][name]
 
@@ -98,6 +118,10 @@ def _doubled(s: Scene, d: dict[str, Any], name: str) -> float:
 _WRONG: dict[str, tuple[Any, ...]] = {
     **dict.fromkeys(("2.4", "3.5"), ("small", {}, _small)),
     **dict.fromkeys(("3.2", "3.3", "4.3", "6.4", "9.1", "9.2"), ("torque", {}, _torque)),
+    "1.3": ("point", {}, lambda s, d, name: geometry.arc_length(s.theta, a=s.a, b=s.b)),
+    "1.4": ("point", {}, lambda s, d, name: geometry.centre_path(s.theta, a=s.a, b=s.b)),
+    "3.1": ("weight", {"omega": 0.0}),  # the centre would not accelerate
+    "7.4": ("slip", {"x_dot": 99.0}),  # so fast that the slip cannot end
     "10.4": ("inertia", {}, _doubled),  # velocities before the impact do not depend on inertia
     "10.5": ("freedom", {}, None, 31 / 39),
 }

@@ -61,8 +61,9 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     ------
     ValueError
         If a column is missing. Lines that cannot be marked are reported in `refused` instead: the
-        seed is not a whole number or not that of the student's earlier lines, the task does not
-        exist, or the answer is not a number.
+        line has more fields than the head, the student has no name, the seed is not a whole number
+        or not that of the student's earlier lines, the task does not exist, or the answer is not a
+        number.
     TypeError
         If `table` is neither a path nor a file.
     OSError
@@ -74,7 +75,7 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     >>> table = io.StringIO("student,seed,task,answer\\nAda,7,1.1,0.2267\\nBob,8,1.1,0.2")
     >>> marked = rl.course.mark_table(table)
     >>> marked.points, marked.mistakes
-    ({'Ada': 2, 'Bob': 1}, {'none': 1, 'angle': 1})
+    ({'Ada': 2, 'Bob': 1}, {'none': 1, 'degrees or angle': 1})
     """
     if hasattr(table, "read"):
         text = table.read()
@@ -93,17 +94,22 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     refused: dict[int, str] = {}
     for row in reader:
         student, word, task, answer = ((row[name] or "").strip() for name in COLUMNS)
-        of = marks.setdefault(student, {})
+        of = marks.setdefault(student, {}) if student else {}
         try:
+            if any(extra := row.get(None) or []):
+                raise ValueError(
+                    f"line must have {len(names)} fields, got {len(names) + len(extra)}"
+                )
+            if not student:
+                raise ValueError("student must be a name, got none")
             seed: Any = int(word) if re.fullmatch("[+-]?[0-9]+", word) else word or None
             given = mark(task, number_in(answer), seed=seed)
+            if (first := seeds.setdefault(student, seed)) != seed:
+                own = "none" if first is None else first
+                raise ValueError(f"seed must be {own}, as in earlier lines, got {word or 'none'}")
+            of[task] = given
         except (ValueError, TypeError) as error:
             refused[reader.line_num] = str(error)
-            continue
-        if (first := seeds.setdefault(student, seed)) == seed:
-            of[task] = given
-        else:
-            refused[reader.line_num] = f"seed must be {first}, as in earlier lines, got {word}"
     points = {student: sum(m.points for m in each.values()) for student, each in marks.items()}
     kinds = Counter(m.mistake for each in marks.values() for m in each.values())
     return MarkedTable(marks, points, dict(kinds.most_common()), refused)

@@ -26,6 +26,7 @@ from .._verbs.simulate import simulate
 DATA = json.loads(resources.files(__package__).joinpath("tasks.json").read_text("utf-8"))
 FILE = "ROLLING_ELLIPSE_IMPACTS"
 _KEPT = ("gravity", "slope", "T", "step")  # the same for all seeds
+_PURE = ("friction", "restitution")  # pure numbers: not equal to a length of the same value
 _SPREAD = 0.06  # maximum relative difference of numbers from the printed ones
 _MOST = 2**53  # maximum seed: larger ones would not be exact in JSON and in spreadsheets
 _EGG: dict[str, Any] = {"a": 0.035, "b": 0.025}  # the body of the film and of the impacts
@@ -66,7 +67,8 @@ def tasks(seed: int | None = None) -> tuple[Task, ...]:
     seed : int, optional
         Whole number from 0 to 2^53, such as a student's number. The data differ from the printed
         data by up to 6 %, so that the answer to each task remains of the same kind. Equal numbers
-        on a sheet stay equal. Sheets 8 and 10 have other impacts and another film instead.
+        on a sheet stay equal, except that coefficients differ from other quantities. Sheets 8 and
+        10 have other impacts and another film instead.
 
     Raises
     ------
@@ -132,10 +134,11 @@ def _drawn(seed: int, sheet: str) -> list[Task]:
     ]
     if sheet in ("8", "10"):  # the numbers of these sheets are in tables
         return tasks
-    values = sorted({value for task in tasks for value in task.data.values()})
+    values = sorted({(k in _PURE, v) for task in tasks for k, v in task.data.items()})
     for rng in _draws(seed, sheet):
-        new = _varied({value: value for value in values}, rng)
-        own = [{k: v if k in _KEPT else new[v] for k, v in task.data.items()} for task in tasks]
+        new = _varied({key: key[1] for key in values}, rng)
+        own = [{k: v if k in _KEPT else new[k in _PURE, v] for k, v in task.data.items()}
+               for task in tasks]  # fmt: skip
         if sheet != "7" or abs(_slips(simulate(scene_of(own[3]), 5.0))[1]) < 1e-9:
             break
     return [replace(task, data=data) for task, data in zip(tasks, own, strict=True)]
@@ -177,8 +180,9 @@ def filmed(seed: int | None) -> tuple[Scene, dict[str, list[float]]]:
         thrown = Scene(**_EGG | _varied(DATA["thrown"], rng))
         motion = simulate(thrown, times)
         first, last = _slips(motion)
-        # a single impact, late enough, after which more than a quarter of the slip remains
-        if len(motion.events) == 1 and last / first > 0.25 and times[7] < motion.events[0].t:
+        # a single impact, late enough, during which the slip keeps its sign and after which it is
+        # at least 0.06 m/s: with less, a contact that sticks might fit the film, too
+        if [times[7] < e.t for e in motion.events] == [True] and last * np.sign(first) > 0.06:
             break
     tracks = {"t": times}
     for name, (sigma, places) in DATA["noise"].items():
