@@ -95,21 +95,21 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     for row in reader:
         student, word, task, answer = ((row[name] or "").strip() for name in COLUMNS)
         of = marks.setdefault(student, {}) if student else {}
+        why = "" if student else "student must be a name, got none"
+        if any(extra := row.get(None) or []):
+            why = f"line must have {len(names)} fields, got {len(names) + len(extra)}"
+        seed: Any = int(word) if re.fullmatch("[+-]?[0-9]+", word) else word or None
         try:
-            if any(extra := row.get(None) or []):
-                raise ValueError(
-                    f"line must have {len(names)} fields, got {len(names) + len(extra)}"
-                )
-            if not student:
-                raise ValueError("student must be a name, got none")
-            seed: Any = int(word) if re.fullmatch("[+-]?[0-9]+", word) else word or None
             given = mark(task, number_in(answer), seed=seed)
-            if (first := seeds.setdefault(student, seed)) != seed:
-                own = "none" if first is None else first
-                raise ValueError(f"seed must be {own}, as in earlier lines, got {word or 'none'}")
-            of[task] = given
         except (ValueError, TypeError) as error:
-            refused[reader.line_num] = str(error)
+            why = why or str(error)
+        if not why and (first := seeds.setdefault(student, seed)) != seed:
+            own = "none" if first is None else first
+            why = f"seed must be {own}, as in earlier lines, got {word or 'none'}"
+        if why:
+            refused[reader.line_num] = why
+        else:
+            of[task] = given
     points = {student: sum(m.points for m in each.values()) for student, each in marks.items()}
     kinds = Counter(m.mistake for each in marks.values() for m in each.values())
     return MarkedTable(marks, points, dict(kinds.most_common()), refused)
