@@ -204,7 +204,7 @@ def test_a_motion_on_the_separatrix_creeps_to_the_tip_and_never_passes(direction
 
 def test_a_motion_may_last_1e15_half_turns_and_not_an_ulp_longer() -> None:
     body = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
-    longest = 1e15 * (0.5 * period(Scene(**body)))
+    longest = 1e15 * (0.5 * period(Scene(2.0, 1.0, theta=0.2, omega=3.2)))
     assert np.isfinite(flow(longest, **body)).all()
     with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns or swings, "):
         flow(np.nextafter(longest, np.inf), **body)

@@ -3,6 +3,7 @@
 import math
 import sys
 import warnings
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -232,8 +233,12 @@ def test_close_zeros_are_found_anywhere_in_a_motion() -> None:
     motion = simulate(Scene(2.0, 1.0, theta=0.5, friction=1.0), 10.0)
     for first in np.linspace(0.01, 9.95, 43):
         with pytest.warns(CompletenessWarning):
-            pair = motion.when(function=lambda m, c=first: (m.t - c) * (m.t - c - 1e-3))
+            pair = motion.when(function=partial(close_zeros, first))
         assert pair == pytest.approx([first, first + 1e-3], rel=1e-9)
+
+
+def close_zeros(first: float, motion: Trajectory) -> Floats:
+    return (motion.t - first) * (motion.t - first - 1e-3)
 
 
 def test_a_function_with_values_of_any_size_is_searched() -> None:
