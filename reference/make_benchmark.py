@@ -402,7 +402,7 @@ def make(name: str, problem: Problem) -> tuple[str, float, float]:
 
 
 def main(names: list[str]) -> None:
-    """Write the files of some problems, by default of all."""
+    """Write the files of the named problems, or of all problems if none are named."""
     began, checks = time.perf_counter(), []
     for name in names or PROBLEMS:
         text, *check = make(name, PROBLEMS[name])

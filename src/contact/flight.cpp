@@ -251,8 +251,9 @@ double first_touch(const Flight& flight, const Gap& gap) {
                 const double lowest = after > 0 ? bisect_root(now.begin, end, rate).high : end;
                 if (gap.value(lowest) <= 0)
                     return gap.closes(bisect_root(now.begin, lowest, value));
-                // A tip that passes below the centre at this height touches the ground, even if
-                // rounding leaves a positive gap for a fast-spinning body.
+                // A tip directly below the centre touches the ground if the centre is no higher
+                // than the long semi-axis, even if rounding leaves a positive gap for a
+                // fast-spinning body.
                 const double tip = curvature.tip_time(now);
                 if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
             }

@@ -145,7 +145,7 @@ struct Continuation {
     bool has_jammed = false;  // the start is the state in which a slide has jammed
 };
 
-inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in free flight [rad]
+inline constexpr double turn_of_grazing = 0x1p-22;  // turn treated as free flight [rad]
 
 // The mode that the forces allow. Without slip, the body rolls if `may_roll` is set and the forces
 // allow it; otherwise it starts to slide, or leaves the ground if it is no longer pressed against

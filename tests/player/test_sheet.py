@@ -51,7 +51,7 @@ def test_the_browser_gives_the_marks_of_python(number: int, opened: Callable[...
 
 
 def known(number: str) -> list[float]:
-    """Numbers close to the ends of the intervals of marks."""
+    """The answers at which the mark changes, and the doubles on either side of each."""
     ends = _marks.key(number, SEED).ends
     return [v for end in ends for v in (end, math.nextafter(end, 9e9), math.nextafter(end, -9e9))]
 

@@ -22,7 +22,8 @@ Floats = NDArray[np.float64]
 
 
 class Scan(NamedTuple):
-    """Least margin of the law along a motion, relative to its terms, and the end of the scan."""
+    """How a scan of a motion ended, the angles between which the friction law first broke, and the
+    least margin of that law, relative to the sum of its terms."""
 
     ends: str  # "broken", "turned back" for good, or "open" after many half turns
     between: tuple[float, float]  # last angle before the law breaks, and first angle after

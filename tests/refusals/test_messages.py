@@ -138,15 +138,19 @@ AT_REST = ours.simulate(ours.Scene(2.0, 1.0), 1.0)
         ("a property of the Axes: set it with ax.set(title", lambda: AT_REST.plot(title="x")),
         ("set it with ax.set(xlim=...)", lambda: AT_REST.plot_forces(xlim=(0, 1))),
         ("did you mean color?", lambda: AT_REST.plot_phase(colour="r")),
-        ("no artist has", lambda: AT_REST.plot_paths(glow=True)),
         ("plot_curves(motion, 'omega')", lambda: AT_REST.plot("omega")),
         ("mean stronge?", lambda: ours.impacts.collide(**HIT, a=1, b=1, law="Strong")),
     ],
 )
-def test_a_familiar_but_wrong_word_is_answered_with_the_right_one(said: str, call: Any) -> None:
+def test_the_message_for_a_plausible_mistake_says_what_to_use_instead(said: str, call: Any) -> None:
     with pytest.raises((TypeError, AttributeError, ValueError)) as caught:
         call()
     assert said in str(caught.value)
+
+
+def test_an_option_that_no_artist_has_is_rejected_by_name() -> None:
+    with pytest.raises(TypeError, match=r"plot_paths\(\) does not take glow, which no artist has"):
+        AT_REST.plot_paths(glow=True)
 
 
 def raising(path: Path) -> Iterator[tuple[int, int, str]]:

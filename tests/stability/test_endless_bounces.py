@@ -28,8 +28,9 @@ def dropped(theta: float = 0.0, **given: Any) -> Scene:
 
 def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
     """In a loop over parabolas and collisions, time stops at the first bounce that takes less than
-    half an ulp of the clock, n = log2(4 v/(g ulp)) = 53, however many bounces follow. The last
-    bounce ends at v/g (1 + e)/(1 - e), with v from the height of the double z."""
+    half an ulp of the clock, n = log2(4 v/(g ulp)) = 53, however many bounces follow. The
+    bounces end at v/g (1 + e)/(1 - e), where v is the speed of impact for the start height z as it
+    is stored in a double."""
     with mp.workdps(DIGITS):
         v = mp.sqrt(2 * mp.mpf(GRAVITY) * (mp.mpf(dropped().z) - B))
         end = float(v / GRAVITY * (1 + mp.mpf(E)) / (1 - mp.mpf(E)))

@@ -79,8 +79,8 @@ PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     const T cos = abs(phase.cos);
     const auto at_tip = map.kappa * (sin * sin) > map.grade * (cos * cos);
     const T ratio = (at_tip ? cos : sin) / (at_tip ? sin * map.kappa : cos * map.grade);
-    // Newton's method for x = sinh y with sc(y) = ratio, starting from the root for B = 1, A = A_0
-    // - 2 q c.
+    // Newton's method for x = sinh y with sc(y) = ratio. The initial guess is the root of the
+    // equation with the theta series truncated to B = 1 and A = 1 + a[1] c, where c = 1 + 2 x^2.
     const T complement = map.kappa * map.grade;
     const T q2 = -map.a[1];
     T x = 2 * ratio * (1 - q2) /

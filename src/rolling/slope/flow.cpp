@@ -17,8 +17,9 @@ const Swing* swing_of(const SlopeFlow& flow) {
     return flow.stretches.empty() ? nullptr : std::get_if<Swing>(&flow.stretches.back().law);
 }
 
-// Whether the body turns by less than `angle` within `time` of the start. Only series keep the path
-// accurate near the start.
+// Whether the body turns by less than about `angle` within `time` of the start, estimated from its
+// initial acceleration. Near the start, series replace sums, whose path is less accurate there, and
+// swings, which are slower.
 bool is_near(const SlopeFlow& flow, double time, double angle) {
     const double speed = std::abs(flow.start.omega) + 0.5 * std::abs(flow.acceleration) * time;
     return time * speed < angle;

@@ -68,14 +68,14 @@ struct SlopeFlow {
 // The flow of a body that rolls on a nonzero slope.
 SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
 
-// A new flow from the same start, whose swings are followed by series.
+// A new flow from the same start that computes swings from series, not as a `Swing`.
 SlopeFlow by_series(const SlopeFlow& flow);
 
 // Extends the stretches until the motion is known up to a time [s].
 void prepare(SlopeFlow& flow, double t);
 
-// Appends at least one stretch; false if the last stretch never ends. A swing is followed by series
-// if the body is still near its start at the time `until`, which is in units of the body.
+// Appends at least one stretch; false if the last stretch never ends. A swing is computed from
+// series if the body is still near its start at the time `until`, which is in units of the body.
 bool grow(SlopeFlow& flow, double until = infinity);
 
 // The state at a time in [0, longest_time], or at n such times, up to which the flow must have been
