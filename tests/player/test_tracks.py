@@ -96,7 +96,7 @@ def test_parts_of_a_long_motion_are_as_accurate_as_a_short_motion() -> None:
     assert known[found["starts"]] == pytest.approx([begin for begin, _ in parts], abs=1e-3)
     times = np.concatenate([np.linspace(*part, 501) for part in parts])
     assert np.max(np.abs(read_back(found, times)["x"] - motion.sol(times).x)) < 4e-3
-    with pytest.raises(ValueError, match="in at most 20000 samples"):
+    with pytest.raises(ValueError, match="a player needs at most 20000 samples"):
         track(motion, [(0.0, 1e5)], 1e-3)
 
 
