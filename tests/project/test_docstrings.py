@@ -74,6 +74,7 @@ def test_an_example_runs_as_it_is_printed(of: Any, tmp_path: Path, monkeypatch: 
     matplotlib.use("Agg")
     test = doctest.DocTest(examples, {"rl": rl, "np": np}, NAMES[of], None, 0, text)
     failures: list[str] = []
-    doctest.DocTestRunner(_get_checker(), optionflags=FLAGS).run(test, out=failures.append)
+    runner = doctest.DocTestRunner(_get_checker(), verbose=False, optionflags=FLAGS)
+    runner.run(test, out=failures.append)
     plt.close("all")
     assert not failures, "".join(failures)
