@@ -17,13 +17,13 @@ from rolling_ellipse import Scene, Trajectory, _core
 Floats = NDArray[np.float64]
 How = dict[str, Any]  # arguments of `simulate`
 
-# The 2:1 disc; a^2, b^2 and k^2 are exact in double precision, so that the equation is not rounded.
+# The 2:1 disc; a^2, b^2 and k^2 are exact doubles, so that no coefficient is rounded.
 A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81
 EXPLICIT = ("rk4", "dopri5", "dop853")
 
 
 def run(scene: Scene, times: ArrayLike, **how: Any) -> Trajectory:
-    """Simulate, whatever the outcome, without the warnings that the notebook discusses."""
+    """Simulate without the warnings that the notebook discusses; a failed run does not raise."""
     with warnings.catch_warnings():
         for shown_here in (rl.StabilityWarning, rl.ValidityWarning):
             warnings.simplefilter("ignore", shown_here)
@@ -168,7 +168,7 @@ def missed_with(gains: tuple[float, float], method: str, step: float = 2.0**-7) 
 
 
 def reach(method: str, step: float = 2.0**-7) -> float:
-    """Return the largest 2 alpha h at which runs with equal gains do not diverge."""
+    """Return the largest 2 alpha h at which runs with gains alpha = beta do not diverge."""
 
     def holds(reached: float) -> bool:
         gain = reached / (2 * step)
@@ -186,8 +186,8 @@ STEP = 1 / 16  # step [s]: a power of two, so that the times of all steps are ex
 class Rhythm(NamedTuple):
     """A rocking motion in which a whole number of half swings takes a whole number of steps.
 
-    Samples at multiples of this time are at ends of steps, at the same phase of the truncation
-    error.
+    Samples at multiples of this time are at ends of steps, where the truncation error has the same
+    phase.
     """
 
     half_swings: int
@@ -233,15 +233,15 @@ def energy_error(theta: ArrayLike, omega: ArrayLike, start: float) -> Floats:
 
 
 class Errors(NamedTuple):
-    """Errors of several runs after numbers of half swings, at which the body is flat."""
+    """Errors of several runs at the ends of half swings, when the body is flat."""
 
     half_swings: Floats
-    energy: Floats  # (runs, samples), relative error of the energy
-    delay: Floats  # (runs, samples), delay of the phase [s]
+    energy: Floats  # relative error of the energy, shape (runs, samples)
+    delay: Floats  # delay of the phase [s], shape (runs, samples)
 
 
 def errors(rhythm: Rhythm, samples: int, runs: Sequence[How]) -> Errors:
-    """Return the errors of runs of the motion of `rhythm` at a number of samples."""
+    """Simulate the motion of `rhythm` with each of the settings `runs`, and return the errors."""
     half_swings = np.arange(1.0, samples + 1) * rhythm.half_swings
     times, start = half_swings * rhythm.half_swing, rhythm.omega
     theta, omega, _ = rl.flow(times, a=A, b=B, theta=0.0, omega=start)
@@ -292,13 +292,13 @@ STRAY: dict[str, How] = {
 
 
 def rolls_over(omega: float, half: float, **how: Any) -> bool:
-    """Return whether a body that starts flat has rolled over at the time `half` by a method."""
+    """Return whether a method makes a body that starts flat roll over by the time `half`."""
     found = rl.simulate(Scene(A, B, omega=omega), [half], **({"model": "rolling"} | how))
     return bool(found.theta[0] > math.pi / 2)
 
 
 def own_separatrix(**how: Any) -> float:
-    """Return the relative distance from omega_R at which bodies start to roll over by a method."""
+    """Return the relative error of the least speed at which a method makes a body roll over."""
     times, speed = np.arange(0.0, 60.0, 0.25), rl.thresholds(A, B).roll_over_speed
     low, high = -0.2, 0.2
     for _ in range(60):
@@ -306,7 +306,7 @@ def own_separatrix(**how: Any) -> float:
         scene = Scene(A, B, omega=speed * (1 + middle))
         theta = rl.simulate(scene, times, **({"model": "rolling"} | how)).theta
         left = np.flatnonzero((theta > 2.0) | ((theta < 0.5) & (times > 2)))
-        if theta[left[0] if left.size else -1] > math.pi / 2:  # at the end if it lingers
+        if theta[left[0] if left.size else -1] > math.pi / 2:  # the last if it stays near the tip
             high = middle
         else:
             low = middle
@@ -327,7 +327,7 @@ def swing(ratio: float) -> Scene:
 def steps_needed(ratio: float, method: str) -> float:
     """Return the smallest number of equal steps in a swing with an error below 1e-6 rad.
 
-    Numbers in ratios of 2^(1/4) are tried, until the number and its double both have such an error.
+    Numbers that grow by factors of 2^(1/4) are tried until both a number and its double suffice.
     """
     scene = swing(ratio)
     once = rl.period(scene)
@@ -355,11 +355,11 @@ REPORT_MASS = 10.0  # mass [kg]
 
 
 class Third(NamedTuple):
-    """lambda_3 on an exact state, by three formulas [N]."""
+    """lambda_3 of an exact state, from three formulas [N]."""
 
-    printed: float  # by eq 39 of the report
-    complete: float  # by eq 39 with all the terms of its numerator
-    solved: float  # by the linear system of the four multipliers
+    printed: float  # from eq 39 of the report
+    complete: float  # from eq 39 with all the terms of its numerator
+    solved: float  # from the linear system of the four multipliers
 
 
 def third(theta: float, a: float, b: float) -> Third:
@@ -389,7 +389,7 @@ LAWS: dict[str, tuple[int, How]] = {  # power of time with which the phase error
 
 
 def phase_missed(spans: Floats, **how: Any) -> tuple[Floats, float]:
-    """Return errors of theta [rad] after numbers of half turns, and the steps per half turn."""
+    """Return errors of theta [rad] after `spans` half turns, and the steps per half turn."""
     times = spans * half_turn(SPUN)
     found = run(SPUN, times, **how)
     missed = np.abs(found.theta - rl.simulate(SPUN, times).theta)
@@ -447,7 +447,7 @@ def sinking(v: float, e: float, step: float, t_end: float) -> tuple[Floats, Floa
 
 
 class Pressed(NamedTuple):
-    """Normal force and response of a sliding body, by a law of force."""
+    """Normal force and response of a sliding body, assuming that it stays in contact."""
 
     normal: Any  # N/m [m/s^2]
     response: Any  # m B, so that N/m = load / (m B)
@@ -467,7 +467,8 @@ def pressed(theta: Any, omega: Any, x_dot: Any, mu: float) -> Pressed:
 def law_of_force(y: ArrayLike, mu: float, step: float = 1e-3, t_end: float = 0.4) -> Floats:
     """Return rows of t, N/m, omega and x_dot from the start y = (theta, omega, x_dot).
 
-    Runge-Kutta steps do not check B, and stop when numbers overflow. The shape is (steps, 4).
+    The Runge-Kutta steps ignore the sign of B, and stop when numbers overflow. The shape is
+    (steps, 4).
     """
 
     def rates(y: Floats) -> Floats:
@@ -539,8 +540,8 @@ class Loose(NamedTuple):
 
     motion: Trajectory
     missed: Floats  # constraint errors at each sample, in long semi-axes and rad
-    energy: Floats  # change of the energy at each sample over its largest magnitude
-    phase: float  # largest error in the last ten seconds [rad]; at one time swings may cross
+    energy: Floats  # change of the energy at each sample, relative to the largest energy
+    phase: float  # largest error in the last ten seconds [rad]; at one time it may be 0
     texts: list[str]  # texts of the warnings
 
 
@@ -578,9 +579,9 @@ def _acceleration(theta: Any, omega: Any) -> Any:
 
 
 def plain(power: int, number: Any) -> float:
-    """Return the rms error of the angles after SPAN by the textbook form of the classical method.
+    """Return the rms error of the angles after SPAN with the textbook form of the classical method.
 
-    The steps are 2^-power, and the numbers have the given type.
+    The steps are 2^-power, and the arithmetic has the type `number`.
     """
     theta, omega = THETA.astype(number), SPEED.astype(number)
     start = {"theta": theta.astype(float), "omega": omega.astype(float)}

@@ -197,7 +197,7 @@ def blow() -> Figure:
     edge = B + B * math.sqrt(1 - (0.25 / A) ** 2)
     arrow(left, (0.25, edge), (0.25, edge + 0.13), ORANGE)
     arrow(left, (0, 0.13), (0, 0), PLUM)
-    arrow(left, (0.13 * 0.6207 / 0.9, 0), (0, 0), PLUM)  # all three at the scale of task 5.2
+    arrow(left, (0.13 * 0.6207 / 0.9, 0), (0, 0), PLUM)  # all three arrows to scale, as in task 5.2
     left.annotate("", (0.25, B), (0, B), arrowprops={"arrowstyle": "<->", "color": GREY})
     left.text(0.125, B + 0.012, "$d_x$", color=GREY, ha="center")
     left.text(0.265, edge + 0.07, "$J_z$", color=ORANGE)
@@ -234,7 +234,7 @@ def slip() -> Figure:
 
 
 def first_events(ax: Axes) -> None:
-    """Draw the proved outcome of rolling at each point, and the bounds of the slip windows."""
+    """Draw the proved outcomes over friction and speed, and the bounds of the slip windows."""
     mu, speed = np.linspace(0.1, 0.8, 281), np.linspace(0.02, 12.4, 310)
     outcomes = rl.classify(**BODY, omega=speed[:, None], friction=mu)
     kinds = [rl.Outcome.ROCKS, rl.Outcome.ROLLS_OVER, rl.Outcome.SLIPS]

@@ -18,14 +18,14 @@ NAMES = [
     "rest.lie", "roll.circle", "roll.rock", "roll.roll", "roll.thin", "brink.back", "brink.over"
 ]  # fmt: skip
 Q, Q_V, ALL = "q", "q, v", "all"
-RUNS = [  # form, tolerance, entries in the test of local errors
+RUNS = [  # form, tolerance, entries whose local errors are tested
     ("index1", 2e-15, Q_V), ("ggl", 3e-14, Q_V), ("index2", 3e-14, Q_V), ("index3", 3e-14, Q_V),
     ("index3", 1e-8, Q), ("ggl", 3e-14, ALL), ("index2", 3e-14, ALL),
 ]  # fmt: skip
 
 
 def scored(problem: benchmark.Problem) -> np.ndarray:
-    """Return the tabulated times after the start at which states are scored."""
+    """Return the tabulated times, except the start, at which states are scored."""
     times = problem.times[problem.times > 0]
     return times[(times < problem.horizon) | (problem.horizon == problem.t_end)]
 
@@ -55,7 +55,7 @@ def outcome(problem: benchmark.Problem, dae: benchmark.Dae, found, states) -> tu
 
 
 def ida() -> str:
-    """Return the table of the runs of IDA."""
+    """Run IDA on all problems, and return the table of results."""
     lines = ["| problem | form | tolerance | in the test | error | F | J | s | outcome |"]
     lines += ["|---|---|---|---|---|---|---|---|---|"]
     solve = solver("sksundae")
@@ -77,7 +77,7 @@ def ida() -> str:
 
 
 def radau() -> str:
-    """Return the table of the runs of solve_dae."""
+    """Run solve_dae on three problems, and return the table of results."""
     lines = ["| problem | form | error | F | J | LU | outcome |", "|---|---|---|---|---|---|---|"]
     solve = solver("solve_dae")
     for name in ("roll.circle", "roll.roll", "brink.over"):

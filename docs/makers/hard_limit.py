@@ -1,14 +1,14 @@
-"""Compute data/hard_limit.csv and data/stiffness.csv, and write their tables in your_tests.md.
+"""Compute data/hard_limit.csv and data/stiffness.csv, and write their tables into your_tests.md.
 
     python docs/makers/hard_limit.py            takes two minutes; needs gmpy2 and SciPy
 
 `exact` computes the rigid answers to 64 digits with reference/contact_motion.py, which shares no
-code with the package. `Soft` is a third program: the same body on a linear spring. Its distance
-from the rigid answers is measured on a ladder of stiffnesses.
+code with the package. `Soft` simulates the same body on a linear spring; its distance from the
+rigid answers is measured for several stiffnesses.
 
-Per mass, with k^2 = I/m and s = stiffness/m, where h is the height of the centre of a touching body
-and o = dh/dtheta: the overlap is d = h - z, N acts at the distance o ahead of the centre, and F at
-the distance h below it,
+Forces are per unit mass, k^2 = I/m and s = stiffness/m. h is the height of the centre of a touching
+body, and o = dh/dtheta. The overlap is d = h - z; N acts at the distance o ahead of the centre, and
+F at the distance h below it:
 
     x'' = F,   z'' = N - g,   k^2 omega' = -h F - (o + q) N,   slip v = x' - h omega
 
@@ -17,8 +17,8 @@ rolling resistance with the sign of omega. There are two laws for N:
 
     latch     s d in compression, then s (d - d0)/e^2, which returns e^2 of the work (O. R. Walton,
               R. L. Braun, J. Rheology 30 (1986) 949); with e = 0 the impact ends at the largest d
-    dashpot   s d + 2 zeta sqrt(s) d' until d = 0; zeta gives a normal impact without gravity the
-              restitution e. With e = 0 damping is critical
+    dashpot   s d + 2 zeta sqrt(s) d' until d = 0, with the zeta for which a normal impact without
+              gravity has the restitution e; with e = 0 damping is critical
 """
 
 import csv
@@ -114,7 +114,7 @@ class Soft:
         self.a, self.b, self.k2, self.mu, self.e, self.lever = (row[name] for name in INPUTS[:6])
         decay = math.log(self.e) if self.e else -math.inf
         self.zeta = 1.0 if decay == -math.inf else -decay / math.hypot(decay, math.pi)
-        self.returns, self.d0 = False, 0.0  # whether restitution has begun, and its d with N = 0
+        self.returns, self.d0 = False, 0.0  # whether restitution has begun, and d at its end
         self.side = self.turn = 0  # signs of slip and rotation; 0 if the contact sticks
 
     def touch(self, y):
@@ -151,7 +151,7 @@ class Soft:
         return self.mu * abs(normal) - abs(self.holding(y, normal))
 
     def contact(self, t, y):
-        """Return a value that is positive until the compression, or else the contact, ends."""
+        """Return a value that is positive until the contact (or the latch's compression) ends."""
         if not self.latch:
             return self.touch(y)[2]
         return self.normal(y) if self.returns else self.touch(y)[3]
@@ -161,13 +161,13 @@ class Soft:
         return self.turn * y[5]
 
     def stick_or_slip(self, y):
-        """Choose whether a contact without slip sticks; if N = 0, the choice holds for any N."""
+        """Choose whether a contact without slip sticks; if N = 0, choose as for N/m = 1 m/s^2."""
         normal = self.normal(y) or 1.0
         friction = self.holding(y, normal)
         self.side = 0 if abs(friction) <= self.mu * abs(normal) else -int(np.sign(friction))
 
     def turn_or_rest(self, y):
-        """Choose the sense of rotation of a body that does not turn; 0 if the couple holds it."""
+        """Choose the sense in which a resting body starts to turn; 0 if the resistance holds it."""
         o = self.touch(y)[1]
         self.turn = 0 if abs(o) <= self.lever else -int(np.sign(o))
 
@@ -210,7 +210,7 @@ class Soft:
 
 
 def error(row, s, law):
-    """Return the largest error: of x_dot, z_dot, k omega after an impact, or of t, x, theta."""
+    """Return the largest error of x_dot, z_dot, k omega after an impact, else of t, x, theta."""
     t, y = Soft(row, s, law).follow()
     impact = row["event"] == "IMPACT"
     found = np.array(y[3:] if impact else [t, y[0], y[2]])
@@ -220,7 +220,7 @@ def error(row, s, law):
 
 
 def ladder(row):
-    """Yield rows of errors for each law; impacts with e = 0 do not end on a dashpot."""
+    """Yield a row for each law and stiffness; on a dashpot an impact with e = 0 does not end."""
     impact = row["event"] == "IMPACT"
     for law in ("latch", "dashpot") if impact else ("dashpot",):
         if law == "latch" or row["restitution"] or not impact:
@@ -230,7 +230,7 @@ def ladder(row):
 
 
 def exponent(rungs):
-    """Return the exponent of the error over the two stiffest springs; NaN if it is below NOISE."""
+    """Return the exponent of the error at the two stiffest springs; NaN for errors below NOISE."""
     (s, first), (t, last) = ((rung["stiffness"], rung["error"]) for rung in rungs[-2:])
     return math.log(last / first) / math.log(t / s) if last > NOISE else math.nan
 

@@ -57,8 +57,8 @@ MOTIONS = {
 }
 STAMPS = {"commit": ", at commit", "peers": ", beside"}
 COLUMNS = [10.0**-k for k in range(2, 15, 3)]
-# The default ball of pooltool-billiards 0.3.3, started at 1 m/s without spin, stops slipping at
-POOLTOOL = 0.14562399883500798  # [s]
+# Time [s] until the default ball of pooltool-billiards 0.3.3, started at 1 m/s without spin, rolls
+POOLTOOL = 0.14562399883500798
 
 
 def races(quick: bool) -> None:
@@ -221,7 +221,7 @@ def write_part(path: Path, name: str, made: str) -> None:
 
 
 def speed() -> str:
-    """Return text on one race, then tables of all races, of lost races and of times of calls."""
+    """Return text about one race, and tables of all races, lost races and times of calls."""
     import bench_peers
 
     rows, behind = [], []
@@ -256,7 +256,7 @@ def table(head: list[str], rows: list[list[str]]) -> list[str]:
 
 
 def chart(race: WorkPrecision, behind: bool) -> str:
-    """Sentences about the race of the chart, which `flow` must lead at every error."""
+    """Return sentences about the race in the chart, which `flow` must lead at every error."""
     (leader, errors), *others = race.unbeaten().items()
     assert leader == "flow" and not others
     least = min(race.least(error)[leader] for error in errors)
@@ -276,7 +276,7 @@ def chart(race: WorkPrecision, behind: bool) -> str:
 
 
 def lost(line: str, race: str, ahead: str) -> list[str]:
-    """Row of a table from a verdict's line about a peer that is ahead."""
+    """Return a table row from the line of a verdict about a peer that is ahead."""
     found = re.findall(r"([\d.]+) × at (\S+) \((\d+)", line)
     columns = zip(*found, strict=True)
     factors, errors, steps = (" to ".join(dict.fromkeys((each[0], each[-1]))) for each in columns)
@@ -284,7 +284,7 @@ def lost(line: str, race: str, ahead: str) -> list[str]:
 
 
 def calls() -> list[str]:
-    """Return a table of times of calls of the package and of the fastest peers, if measured."""
+    """Return a table of call times of the package and the fastest peers, if there is a file."""
     path = DATA / "calls.json"
     if not path.exists():
         return []
@@ -296,7 +296,7 @@ def calls() -> list[str]:
 
 
 def lead() -> str:
-    """Return the sentence of the first page: the ratio of the best peer's time to the package's."""
+    """Return a sentence for the first page with the ratio of the best peer's time to `flow`'s."""
     race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
     peers = {run.name for run in race.runs if "peer" in run.tags}

@@ -21,7 +21,7 @@ PARTS = {  # code blocks to run first, the block that prints, and the packages u
 
 
 def block(name, page):
-    """Return the code of the page after a mark."""
+    """Return the code block that follows a mark on the page."""
     return re.findall(rf"<!-- {name} -->\n```python\n(.*?)```", page, re.DOTALL)[0]
 
 

@@ -29,7 +29,7 @@ METHODS = {
     "gauss, 0.02 s": {"method": "gauss", "step": 0.02},
     "exact": {"method": "exact"},
 }
-DRIFTS = {  # line styles of the stabilizations of the classical method in five coordinates
+DRIFTS = {  # colour and dashes of each stabilization
     "none": (PLUM, "-"),
     "baumgarte": (ORANGE, "--"),
     "projection": (BLUE, "-."),
@@ -103,7 +103,7 @@ def restored(rows: list[dict[str, Any]]) -> Scores:
 
 
 def stability() -> Figure:
-    """Draw the distance from the ground and the error of theta of rolling over 1000 half turns."""
+    """Draw the distance from the ground and the error of theta over 1000 half turns of rolling."""
     figure = Figure(figsize=(7, 3.2), layout="constrained")
     left, right = figure.subplots(1, 2)
     scene = rl.Scene(1.5, 1.0, theta=0.2, omega=4.0)

@@ -1,7 +1,7 @@
 """Write a page for each problem of `benchmark`, and a table of the problems; a step of `make.py`.
 
-Pages are docs/problems/<id>.md with a picture each; `listed` is a marked part of benchmark.md.
-All numbers are copied to full precision from python/rolling_ellipse/benchmark/problems.
+The pages are docs/problems/<id>.md, each with a picture; the table is for benchmark.md. All numbers
+are copied to full precision from python/rolling_ellipse/benchmark/problems.
 """
 
 import json
@@ -25,8 +25,8 @@ FIELDS = {  # fields of a scene, with their units
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 PHASE = ("brink.back", "brink.over", "roll.rock", "roll.thin")
 FORCES = ("roll.resist", "slide.resist", "slide.stick")
-ALONG = {"hit.ball": 6.0, "hit.bounce": 6.0, "hit.bounce_flat": 12.0}  # speed in pictures [m/s]
-SHOWN = {  # numbers of positions, and last times [s]
+ALONG = {"hit.ball": 6.0, "hit.bounce": 6.0, "hit.bounce_flat": 12.0}  # only in pictures [m/s]
+SHOWN = {  # number of positions in the picture, and time of the last one [s]
     "hit.ball": (7, None), "hit.bounce": (14, 2.6), "hit.bounce_flat": (13, 2.4228),
     "hit.drop_slip": (6, None), "hit.drop_slip_e": (6, None), "hit.drop_stick": (6, 2.0),
     "hit.settle": (13, None), "law.which": (6, None), "rest.lie": (2, None), "jam": (1, None),
@@ -48,7 +48,7 @@ def main() -> None:
 
 
 def problems() -> dict[str, Any]:
-    """Return the data of all problems, sorted by family; numbers are text with all digits."""
+    """Return the data of all problems, sorted by family; numbers are strings with all digits."""
     found = {
         path.stem: json.loads(path.read_text(encoding="utf-8"), parse_float=str, parse_int=str)
         for path in sorted(DATA.glob("*.json"))
@@ -57,7 +57,6 @@ def problems() -> dict[str, Any]:
 
 
 def pages() -> dict[str, str]:
-    """Return the texts of the pages, by problem."""
     return {name: page(data) for name, data in problems().items()}
 
 
@@ -121,7 +120,6 @@ def page(data: Any) -> str:
 
 
 def answer(data: Any) -> str:
-    """Return the answer in words."""
     right = data["answer"]
     if "over" in right:
         passes, turned = (

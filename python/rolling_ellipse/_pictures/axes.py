@@ -231,7 +231,7 @@ def picture_file(path: Any) -> str | None:
 
 
 def write(drawn: Artists, name: str | None) -> None:
-    """Write the whole figure to a file, if a name is given; then remove new figures from pyplot."""
+    """If a name is given, write the whole figure to a file and remove new figures from pyplot."""
     if name is not None:
         drawn.savefig(name)
         for figure in _opened.get():
@@ -274,7 +274,7 @@ def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: An
 
 
 def _new_figure(size: tuple[float, float], figsize: Any) -> Figure:
-    """Open a pyplot figure of size `figsize`, or by default of the style's size, or of `size`."""
+    """Open a pyplot figure of size `figsize`, else the size that a style sets, else `size`."""
     styled = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
     return pyplot_figure(figsize=figsize or (None if styled else size), layout="constrained")
 

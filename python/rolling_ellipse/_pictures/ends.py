@@ -1,4 +1,4 @@
-"""Plots of the ends of many motions: a quantity over the one or two arguments that vary."""
+"""Plots of `Ends`: a quantity at the end of many motions over the one or two varied arguments."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # ends.py imports this file
     from .._verbs.batches import Ends
 
 _CODES: dict[str, Any] = {"mode": ("mode at the end", Mode), "first": ("first event", EventKind)}
-_NONE = -1  # the code that means no event
+_NONE = -1  # the code for "no event"
 
 
 @dataclass(frozen=True, repr=False)
@@ -33,7 +33,7 @@ class EndsChart(Artists):
 
 @picture
 def draw_ends(ends: Ends, quantity: str, path: Any, ax: Axes | None, figsize: Any) -> EndsChart:
-    """Draw a quantity of ends; see `Ends.plot`."""
+    """Draw a quantity at the ends of motions; see `Ends.plot`."""
     file = picture_file(path)
     if len(ends.axes) not in (1, 2) or ends.theta.size == 0:
         raise ValueError(f"ends must have scenes along one or two axes to be drawn, got {ends!r}")

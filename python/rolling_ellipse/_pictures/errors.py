@@ -100,10 +100,10 @@ def plot_energy(
 
     The error is ``|E - E0|`` divided by the largest ``|kinetic| + |potential|`` energy of the
     motion, where E0 is the energy of the first sample; the scale is logarithmic and cannot show
-    exact zeros. Losses by friction and impacts are not errors: after an event that may take energy,
-    E0 is the energy of the next sample, and no error is shown while the body slides or rolls with
-    resistance. Losses by rolling resistance, sliding friction and impacts are drawn separately,
-    each summed from the first sample on.
+    exact zeros. Losses by friction and impacts are not errors: after an event that may dissipate
+    energy, E0 is the energy of the next sample, and no error is shown while the body slides or
+    rolls with resistance. Losses by rolling resistance, sliding friction and impacts are drawn
+    separately, each summed from the first sample on.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def plot_constraints(
     colors: Sequence[Any] | None = None,
     **options: Any,
 ) -> Constraints:
-    """Draw the constraint errors of motions, without units, on a logarithmic scale.
+    """Draw the dimensionless constraint errors of motions on a logarithmic scale.
 
     Lengths are divided by the longer semi-axis, and rates also by the largest ``|omega|`` of the
     motion, so that rounding errors are about 1e-16 for any body. The upper panel shows f2, f3, f4

@@ -23,11 +23,11 @@ from .panels import DASHES, draw_curves, draw_line, entries_of, events_shown, fi
 from .sampling import are_ranges, over_time, ranges
 
 Stems = tuple[Line2D, Line2D]
-"""Impulses of a motion normal to the ground and along it: stems from 0, separated by NaN."""
+"""Impulses of one motion, normal to the ground and along it: stems from 0, separated by NaN."""
 _Lines = tuple[Line2D, ...]
 _Limits = tuple[PolyCollection | None, ...]
 _FORCES = {"normal_force": "normal", "friction_force": "friction"}
-_SPIKE = 20.0  # in weights: a larger force would flatten ordinary ones on a linear scale
+_SPIKE = 20.0  # [weights]; on a linear scale a larger force would flatten ordinary ones
 _LIMIT: dict[str, Any] = {"lw": 1.2, "ls": ":", "label": "available"}
 _STEEP = 3.0  # largest |F|/N in view; |F|/N is infinite where N vanishes
 
@@ -36,9 +36,9 @@ _STEEP = 3.0  # largest |F|/N in view; |F|/N is infinite where N vanishes
 class Forces(Artists):
     """Artists of `plot_forces`; item i belongs to motion i, except in `axes` and `marks`.
 
-    `limits` has None for each motion with unlimited friction; `impulses` has stems normal
-    to the ground and along it; `needed` and `available` (the coefficients of friction) are empty if
-    only one Axes was given.
+    `limits` has None for each motion with unlimited friction. `impulses` has stems normal to the
+    ground and along it. The coefficients of friction `needed` and `available` are empty if only one
+    Axes was given.
     """
 
     normal: tuple[Line2D, ...]
@@ -136,7 +136,7 @@ def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, t
 
 
 def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | None:
-    """Draw the band of possible friction forces of a motion; return None if it is unlimited."""
+    """Draw the band of possible friction forces; return None if friction is unlimited."""
     if not math.isfinite(motion.scene.friction):
         return None
     t, bound = motion.t, motion.scene.friction * motion.normal_force

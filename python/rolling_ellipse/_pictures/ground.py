@@ -25,12 +25,12 @@ from .._motion.trajectory import Trajectory
 from ..geometry import support_slope
 from .palette import PLUM, palette_of
 
-Places = tuple[FloatArray, FloatArray]  # x and z, (n,) [m]
+Places = tuple[FloatArray, FloatArray]  # x and z [m], each of shape (n,)
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
 SHOWN_TURNS = 3.0  # maximum number in a still picture; more turns would make it a thin stripe
 HALF_TURNS = 2 * SHOWN_TURNS
 QUARTER = math.pi / 2
-_TICKS = 8.0  # maximum number of ticks on the ground per inch; in all, 16 to 24
+_TICKS = 8.0  # maximum number of ticks per inch; the total is limited to between 16 and 24
 _LONG = 1e6  # larger numbers are left to matplotlib, which factors out an offset
 
 
@@ -132,8 +132,8 @@ def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Pol
 class Ruler:
     """Tick marks on the ground; every fifth is longer and labelled with its position.
 
-    The marks make the rolling visible. Only ticks within `span` [m] of a given point are drawn, so
-    that the cost does not grow with the distance.
+    Only ticks within `span` [m] of the point set by `move` are drawn, so that the cost does not
+    grow with the distance that a body rolls.
     """
 
     def __init__(self, ax: Axes, scene: Scene, span: float) -> None:
@@ -143,7 +143,7 @@ class Ruler:
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
         self._unit = length_unit(max(scene.a, scene.b))
         self._fifths = math.ceil(span / (5 * self.step))
-        self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # others would be cut off
+        self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # labels beyond are cut off
         grey = palette_of(ax).grey
         self.ticks = LineCollection([], colors=grey, lw=1, **in_ground_axes)
         ax.add_artist(self.ticks)

@@ -165,7 +165,7 @@ def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
 
 
 def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
-    """Give two columns of three panels a common time axis, and panels of several lines a legend."""
+    """Give the panels of both columns a common time axis, and those with several lines a legend."""
     for panel in panels[4:]:
         name_curves(panel)  # before marks are drawn: only the legend of the forces explains them
     marks: list[Artist] = []

@@ -1,7 +1,6 @@
 """The phase plane: angular velocity over angle, and the curve between rocking and rolling over.
 
-The separatrix of rolling on level ground encloses one eye in each half turn, around the flat
-position.
+On level ground this curve, the separatrix, encloses an eye around each flat position.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ from .sampling import FEW, between, half_turns, is_at_hand, period_of, span_of
 _FEW_TURNS = 2.0  # a motion with more turns is folded into one half turn
 _COARSE = 1e-3  # largest accepted ulp of theta [rad]
 _MOST = 1000.0  # maximum number of half turns or swings in one picture
-_TICK = 0.45  # room for a tick [inch]
+_TICK = 0.45  # minimum distance between ticks [inch]
 _POINTS = 801, 100_000  # maximum number of points of a separatrix: per half turn, and in all
 _SMALL = 0.1  # fraction of the roll-over speed; a slower motion would be a dot inside the eye
 
@@ -134,7 +133,7 @@ def plot_phase(
 
 
 def _part(motion: Trajectory) -> tuple[Trajectory, str]:
-    """Return the finely sampled part of a motion to draw, and a note if it is not all."""
+    """Return the finely sampled part of a motion to draw, and a note if the rest is left out."""
     if not is_at_hand(motion):
         return motion, ""
     start, end = span_of(motion)

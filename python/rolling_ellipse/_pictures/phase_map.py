@@ -1,8 +1,8 @@
-"""The phase map: the first outcome of rolling over two of aspect ratio, energy and friction.
+"""The phase map: the outcomes of `classify` in a plane of two quantities.
 
-Two quantities vary along the axes of the plane; the third is fixed. Each point stands for a uniform
-disc that passes the flat position at some speed. Quantities have the units of the arguments of
-`plot_phase_map`. Labelled lines over the map show the thresholds of these discs.
+Two of aspect ratio, energy and friction vary along the axes of the plane; the third is fixed. Each
+point stands for a uniform disc that passes the flat position at some speed. Quantities have the
+units of the arguments of `plot_phase_map`. Labelled lines show the thresholds of these discs.
 """
 
 from __future__ import annotations
@@ -330,7 +330,7 @@ class Plane:
         return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
 
     def caption(self) -> str:
-        """Return the fixed quantities as text, such as "μ = 0.5", with b if there are speeds."""
+        """Return the fixed quantities as text, such as "μ = 0.5", and b if one is a speed."""
         values = [
             f"{AXIS_NAMES[name].split()[0]} = {value:.4g}".replace("inf", "∞")
             + " rad/s" * (name == "speed")

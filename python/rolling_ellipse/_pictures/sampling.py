@@ -30,8 +30,8 @@ _MOST_POINTS = 30_000  # maximum number of points of a curve
 _FEWEST_DOTS = 100  # fewer samples are replaced by the points of a curve
 _ROUNDS = 16  # maximum number of halvings of an interval
 _BEND = 1e-3  # a curve bends if it is farther from its chord than this fraction of its range
-_COUNTS = 1024, 4096, 16_384, 65_536  # numbers of times at which half turns are counted
-_STEADY = 1.05  # successive counts of half turns agree if their ratio is at most this
+_COUNTS = 1024, 4096, 16_384, 65_536  # numbers of samples in successive counts of half turns
+_STEADY = 1.05  # two successive counts agree if their ratio is at most this
 _EVENTS = 4000  # if there are more events, only the first and the last 2000 are drawn as jumps
 _SAMPLES = "t", "theta", "omega", "x", "coordinates", "contact"
 _COMPARED = 64  # number of samples compared with the motion
@@ -96,7 +96,7 @@ def _refined(motion: Trajectory, start: float, end: float, count: float) -> Traj
 
 
 def halve(times: FloatArray, places: _Places) -> tuple[FloatArray, _Places]:
-    """Insert the midpoints of some intervals into `times`; return these and the halves' indices."""
+    """Insert the midpoints of the intervals `places`; return the times and the halves' indices."""
     middles = 0.5 * (times[places] + times[places + 1])
     first = places + np.arange(places.size)
     return np.insert(times, places + 1, middles), np.stack([first, first + 1], axis=1).ravel()
@@ -161,11 +161,12 @@ def half_turns(motion: Trajectory) -> float:
 
 
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
-    """Return the time [s] of `turns` turns or, if earlier, of a path of `turns` 2 pi max(a, b).
+    """Return the time [s] at which a picture of a motion of at most `turns` turns should end.
 
-    The time is not later than the last sample or the end of the first whole swing, which is the
-    second turning point. A turning point is a time at which the rate ("omega" or "x_dot") changes
-    sign, or the start if the rate is 0 there.
+    It is the earliest of the times at which the body has made so many turns or moved by
+    2 pi max(a, b) per turn, the last sample, and the end of the first whole swing, the second
+    turning point. A turning point is a time at which the rate ("omega" or "x_dot") changes sign, or
+    the start if the rate is 0 there.
     """
     start, end = span_of(motion)
     if not is_at_hand(motion):
@@ -231,10 +232,7 @@ def _jumps(motion: Trajectory, start: float, end: float) -> FloatArray:
 
 
 def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
-    """Return the first of three times: of `turns` turns, of as long a path, of a whole swing.
-
-    The time is infinite if the samples end before all of them.
-    """
+    """Return the time at which `turned_until` ends a picture, or infinity if samples end before."""
     t, x, scene = seen.t, seen.x, seen.scene
     turned = np.abs(seen.theta - seen.theta[0]) / (2 * np.pi)
     moved = np.abs(x - x[0]) / (2 * np.pi * max(scene.a, scene.b))

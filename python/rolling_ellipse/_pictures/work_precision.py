@@ -1,4 +1,4 @@
-"""The work-precision diagram: the front of a group of contenders and that of all others."""
+"""The work-precision diagram, with the fronts of a group of contenders and of all others."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
         color, width, size = palette.shade(0.28), 0.7, 1.5
         if name in strong:
             color, width, size = colors["highlight" if name in race.ours else "others"], 1.0, 2.6
-        # a line to all larger errors, for which a single point is accurate enough
+        # extend a single point to all larger errors, for which it is accurate enough
         first = [(max(_MOST, points[0][0]), points[0][1])] if len(points) == 1 else []
         lines[name] = ax.plot(
             *zip(*first, *points, strict=True), color=color, lw=width, marker="o", ms=size, mew=0,
@@ -218,7 +218,7 @@ def _framed(ax: Axes, race: _Race) -> Line2D | None:
 
 
 def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
-    """Write the factors between the fronts, the names of contenders, and the word at the limit."""
+    """Write the factors between the fronts, the names of contenders, and the label of the limit."""
     palette = palette_of(ax)
     halo = palette.background
     ours, others = race.fronts["highlight"], race.fronts["others"]

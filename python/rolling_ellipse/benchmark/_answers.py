@@ -1,11 +1,11 @@
-"""Whether a simulator answers the question of a problem.
+"""Decide whether a simulator answers the question of a problem.
 
 The simulator's output must agree with the answer in its values at the end, or at all times, to
 within 0.01 of their scales (0.01 L or 0.01 rad); in the number of half swings (`_events`); and in
 the kinds and order of events. The time of an event may be off by 2 % of sqrt(L/g) or, if that is
-larger, by 0.1 % of sqrt(L/g) times the largest condition number up to it, but by no more than 10 %
-of sqrt(L/g). The states must follow the package's conventions (`_mistakes`), and match the motion
-as closely as if the inputs were off by at most 10 %.
+larger, by 0.1 % of sqrt(L/g) times the largest condition number of this and earlier events, but by
+no more than 10 % of sqrt(L/g). The states must follow the package's conventions (`_mistakes`), and
+match the motion as closely as if the inputs were off by at most 10 %.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ _Event = tuple[str, float]
 
 
 class Answer(NamedTuple):
-    """Whether the answer is right, why or why not, and the differences of the events.
+    """Whether the answer is right, why or why not, and how the events differ.
 
-    `errors` are the errors of the compared rows in units of their scales, shape (n, 6), relative to
-    the nearest law.
+    `errors`, shape (n, 6), are the differences between the compared rows and the motion of the
+    nearest impact law, in units of the scales.
     """
 
     right: bool
@@ -106,10 +106,10 @@ def _nearest_law(
 
 
 def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
-    """Compare given events with the known ones, or events detected in both motions by one rule.
+    """Compare reported events with the known ones, or events detected in both motions.
 
-    The same rule finds events in both motions, so that its error cancels. For bounces that die out,
-    only the first ones and the time at which they end are compared.
+    The same rule detects events in both motions, so that its error cancels. For bounces that die
+    out, only the first ones and the time at which they end are compared.
     """
     if mine.events is None:
         exact = states_of(one.trajectory.sol(mine.t))
@@ -123,7 +123,7 @@ def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
 
 
 def _settling(one: Problem, bounces: Sequence[_Event]) -> list[str]:
-    """Return what is wrong with bounces that die out; their end may be listed as STICK."""
+    """Return what is wrong with bounces that die out; their end may be reported as STICK."""
     others = [kind for kind, _ in bounces if kind not in ("IMPACT", "STICK")]
     sticks, end = [t for kind, t in bounces if kind == "STICK"], float(one.answer["end"])
     if others or len(sticks) > 1:
@@ -135,7 +135,7 @@ def _settling(one: Problem, bounces: Sequence[_Event]) -> list[str]:
 def _differences(
     one: Problem, mine: Sequence[_Event], known: Sequence[_Event]
 ) -> tuple[list[str], dict[str, Any]]:
-    """Return what is wrong with events, and counts and errors of times by kind.
+    """Return what is wrong with the events, and their counts and errors in time by kind.
 
     If the problem has no event, the rule of `_events` may still detect one in both motions; its
     time is then not compared.
@@ -146,7 +146,7 @@ def _differences(
     for k, ((kind, t), (other, then)) in enumerate(zip(mine, known, strict=False), 1):
         if kind == other:
             off[kind] = max(off.get(kind, 0.0), abs(t - then))
-            until = one.t_end if kind == "REST" else then  # the rule finds REST early
+            until = one.t_end if kind == "REST" else then  # REST is detected early
             if one.events and not abs(t - then) <= _allowed(one, until):
                 wrong.append(f"{kind} {k} at {t:.6g} s, right {then:.6g} s")
     counts = {"missed": dict(wanted - kinds), "invented": dict(kinds - wanted)}
@@ -160,7 +160,7 @@ def _differences(
 
 
 def _allowed(one: Problem, t: float) -> float:
-    """Return the allowed error of an event at a time [s], from the condition numbers up to it."""
+    """Return the allowed error [s] of an event at time t, from the condition numbers up to t."""
     before = [event.condition for event in one.events if event.t <= t]
     share = max(_SHARE, _PER_CONDITION * max(before, default=0.0))
     return float(min(share, _LARGEST_SHARE) / one.scales[5])

@@ -1,4 +1,4 @@
-"""Problems as equations: single arcs with events, or rolling with its constraints."""
+"""Problems as differential equations: ODEs for arcs between events, and DAEs for rolling."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class Dae(FieldsOnly):
         return array("y", y)[..., [0, 1, 2, 5, 6, 7]]
 
     def residual(self, t: Any, y: Any, yp: Any) -> Any:
-        """Return F, shape (n,) or (m, n): q' and M v' minus their right sides, and constraints.
+        """Return F, shape (n,) or (m, n): q' and M v' minus their right sides, then constraints.
 
         Examples
         --------
@@ -160,7 +160,7 @@ class Dae(FieldsOnly):
         return np.concatenate([moved, pushed, [held[row] for row in self.rows]]).T
 
     def jacobian(self, t: float, y: Any, yp: Any, cj: float) -> Any:
-        """Return dF/dy + cj dF/dy', shape (n, n), exact to within rounding, by complex steps.
+        """Return dF/dy + cj dF/dy', shape (n, n), from complex steps, exact to within rounding.
 
         Examples
         --------
@@ -235,9 +235,9 @@ class Ode:
         """Functions of t and y that decrease through zero where the arc ends.
 
         They have the attributes `kind`, `terminal` and `direction`. After SLIP, LIFT_OFF and a
-        rebound they start at zero, and a solver would miss a bounce within its first step.
-        Therefore they return 1 for the first 0.001 sqrt(L/g) or, after a rebound, for a tenth of
-        the time to its apex if this is shorter.
+        rebound they start at zero, and a solver would find this zero instead of an event within its
+        first step. Therefore they return 1 for the first 0.001 sqrt(L/g) or, after a rebound, for a
+        tenth of the time to its apex if this is shorter.
         """
         arcs: dict[str, dict[str, Callable[[Any], Any]]] = {
             ROLLING: {"SLIP": self._grip},
@@ -309,7 +309,7 @@ class Ode:
         return np.array([event.t for event in self.problem.events])
 
     def _touching(self, t: float, y: FloatArray, slip: float, kind: str) -> Ode:
-        """Return the arc of a body on the ground; a slip starts against the friction needed."""
+        """Return the arc of a body on the ground; a new slip opposes the friction of rolling."""
         quiet = self._pause if kind == "SLIP" else 0.0
         here = replace(self, mode=ROLLING, t0=t, y0=y, kind=kind, side=0, quiet=quiet)
         if slip == 0 and kind != "SLIP" and here._grip(y) > 0:
@@ -367,7 +367,6 @@ class Ode:
 
 
 def first_arc(problem: Problem, xp: Any) -> Ode:
-    """Return the first arc of a problem."""
     start = problem.exact(0.0)
     arc = Ode(problem, FLIGHT, 0.0, start, xp=xp)
     if problem.scene.initial_state.mode is Mode.FLIGHT:

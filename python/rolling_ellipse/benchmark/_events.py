@@ -1,8 +1,8 @@
 """Events detected in the states of a motion by one rule, for simulators that report none.
 
-With L = max(a, b), a row flies if the gap is above L/500, slips if it does not fly and the
-magnitude of the slip is above sqrt(g L)/100, and rolls otherwise. Consecutive rows of the same kind
-form a run. A run is also divided where the velocity of the centre is pushed up by more than
+With L = max(a, b), a row (a state) flies if the gap is above L/500, slips if it does not fly and
+the magnitude of the slip is above sqrt(g L)/100, and rolls otherwise. Consecutive rows of the same
+kind form a run. A run is also divided where the velocity of the centre is pushed up by more than
 sqrt(g L)/10 between two rows while the gap changes from closing to opening. Runs on the ground that
 are shorter than sqrt(L/g)/10 belong to the run before, as do rolling runs up to twice as long
 between opposite slips.

@@ -1,4 +1,4 @@
-"""Recognition of mistakes of convention and of output in the states of a simulator.
+"""Recognition of wrong conventions and wrong output in the states of a simulator.
 
 A mistake is reported if correcting it leaves at most a twentieth of the error. Errors are relative
 to scale and condition number, so that numerical errors are small compared with mistakes.
@@ -19,7 +19,7 @@ from ._results import Rows
 
 _LEFT = 0.05  # largest share of an error that may remain once a mistake is corrected
 _LEAST = 0.02  # smallest error of a variable for which a mistake is sought
-_LEAST_SHIFT = 1e-3  # smallest error for which a shift in time is sought: one row may be little
+_LEAST_SHIFT = 1e-3  # the same for a shift in time, since a shift by one row may change little
 _FEW_OF_A_TURN = 0.5  # largest error of a wrapped angle once it is unwrapped [rad]
 _SHIFTS = {1: "one", 2: "two", 3: "three"}
 _DEGREE = math.pi / 180
@@ -31,8 +31,7 @@ _ANGLES: tuple[tuple[float, list[str]], ...] = (
 
 
 class _Known(NamedTuple):
-    """Right states at given times, the units of their errors, and the indices of these times in the
-    rows of a result."""
+    """The right states at some times, the units of errors, and the result's rows at these times."""
 
     states: FloatArray
     units: FloatArray
@@ -106,7 +105,7 @@ def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool
 def _unlike(k: int, values: FloatArray, known: _Known, height: FloatArray) -> str:
     """Return what the values of a variable look like, or "" if the mistake is unknown.
 
-    The error left must also be small relative to the right values, since zeros fit any unit.
+    The remaining error must also be small relative to the right values, since zeros fit any unit.
     `height` is the height of the centre of a body on the ground.
     """
     name, right, units = STATE[k], known.states[:, k], known.units[:, k]

@@ -267,7 +267,6 @@ class Scores(tuple[Score, ...]):
 
 
 def scored(one: Problem, setting: float | None, mine: Rows, tolerance: float) -> Score:
-    """Return the score of a result."""
     if not mine.t.size:
         why = "; ".join(["no row is finite and within its time", *filter(None, [mine.not_finite])])
         return Score(one.id, setting, FAILED, reason=why, tolerance=tolerance)

@@ -1,4 +1,4 @@
-"""A course of ten sheets (docs/course), with different numbers for each student, and its marks.
+"""A course of ten sheets (docs/course), with numbers for each student and marks for the answers.
 
 The package computes the right answers, and also those that result from common mistakes.
 

@@ -31,7 +31,7 @@ def answer(
 
 
 def runs(s: Scene, d: dict[str, Any], name: str, rates: Callable[[float, Any], Any]) -> float:
-    """Return theta at T by the classical Runge-Kutta method, or the order seen by halving steps."""
+    """Return theta(T) from the classical Runge-Kutta method, or its order from halved steps."""
 
     def end(parts: int) -> float:
         y, step = np.array([s.theta, s.omega]), d["step"] / parts
@@ -77,7 +77,7 @@ def _impacts(s: Scene, d: dict[str, Any], name: str) -> float:
 
 @lru_cache(512)
 def _error(seed: int | None, measured: str | None, a: float, b: float, k2: float) -> float:
-    """Return the least rms error of a fit by Stronge's law; `measured` names the file, if any."""
+    """Return the least rms error of a fit of Stronge's law; `measured` only keys the cache."""
     series: Any = measured_impacts(seed)
     return impacts.fit(*series, a=a, b=b, gyration2=k2, minimise="rms").rms_error
 
@@ -86,9 +86,9 @@ def _error(seed: int | None, measured: str | None, a: float, b: float, k2: float
 def fitted(seed: int | None, doubled: bool = False) -> tuple[dict[str, float], dict[str, float]]:
     """Return the best fit to the film, with chi^2 per degree of freedom, and standard errors.
 
-    If k^2 is twice too large (`doubled`), the fit starts from the right fit with half its friction,
-    for which the body slides throughout the impact. With more friction the contact may stick, and
-    the fit may end in a worse minimum.
+    If `doubled`, k^2 is twice too large, and the fit starts from the right fit with half its
+    friction, for which the body slides throughout the impact. With more friction the contact may
+    stick, and the fit may end in a worse minimum.
     """
     from scipy.optimize import least_squares
 
@@ -107,7 +107,7 @@ def fitted(seed: int | None, doubled: bool = False) -> tuple[dict[str, float], d
     errors = np.sqrt(np.linalg.inv(best.jac.T @ best.jac).diagonal())
     chi2 = 2 * best.cost / (best.fun.size - len(names))
     known, off = (dict(zip(names, row.tolist(), strict=True)) for row in (best.x, errors))
-    return known | {"chi2": chi2}, off | {"chi2": chi2 / 400}  # chi2 is right to within 0.5 %
+    return known | {"chi2": chi2}, off | {"chi2": chi2 / 400}  # half the tolerance of 0.5 %
 
 
 _FORMULAS: dict[str, Formula] = {

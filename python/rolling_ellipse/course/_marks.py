@@ -18,9 +18,9 @@ from ._mistakes import usual
 from ._tasks import DATA, FILE, NUMBERS, checked, numbered, sheet_of
 
 _ROUNDING = 1e-4  # assumed relative error of the data; rounding to four digits causes at most 5e-4
-_MOST = 5e-3  # largest relative tolerance, and relative excess over it that is nearly right
+_MOST = 5e-3  # largest relative tolerance, and largest excess over it of a nearly right answer
 _NOTHING = 1e-9  # magnitude assumed for an answer of 0
-_STEP = 1e-6  # relative step of the finite differences for the condition
+_STEP = 1e-6  # relative step of the finite differences for the condition number
 _BY_HAND = 3  # number of tolerances within which an answer from the film is a good estimate
 
 
@@ -65,7 +65,7 @@ class Mark:
 
 
 class Key(NamedTuple):
-    """The marks of all possible answers: below the first end, between ends, and above the last."""
+    """The marks of all possible answers: marks[i] is for answers from ends[i - 1] to ends[i]."""
 
     ends: list[float]
     marks: list[Mark]
@@ -163,7 +163,7 @@ def _key(task: str, seed: int | None, measured: str | None) -> Key:
 def _known(
     task: str, seed: int | None, measured: str | None
 ) -> tuple[float, list[tuple[tuple[str, ...], float]]]:
-    """Return the relative tolerance without rounding, and answers with their mistakes.
+    """Return the relative tolerance (without that for rounding), and answers with their mistakes.
 
     The right answer comes first. The answers that follow from single mistakes and from pairs of
     mistakes come next, and then the answers to other tasks.

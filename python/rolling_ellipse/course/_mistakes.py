@@ -25,7 +25,7 @@ class Mistake(NamedTuple):
 
 _BLOWS = ("5.1", "5.2", "5.3", "5.4", "7.4", "8.6")  # blows and impacts with friction
 _RESTS = ("2.2", "2.4", "3.5")  # releases from rest: at theta = 0 the body would not move
-_STEPPED = ("2.4", "3.5", "9.1", "9.2")  # programs, which have no key for degrees
+_STEPPED = ("2.4", "3.5", "9.1", "9.2")  # computed by programs, which have no degree mode
 _RADIAN = 180 / math.pi
 
 
@@ -59,7 +59,7 @@ def _shape(s: Scene, theta: Any) -> Any:
 
 
 def _by_torque(s: Scene, theta: Any, omega_squared: Any) -> tuple[Any, Any, Any]:
-    """Return omega_dot, F and N of rolling by the incorrect equation M_C = I_C omega_dot."""
+    """Return omega_dot, F and N of rolling from the incorrect equation M_C = I_C omega_dot."""
     h, lead, bend = _shape(s, theta)
     down, along = s.gravity * math.cos(s.slope), s.gravity * math.sin(s.slope)
     spin = (along * h - down * lead) / (s.gyration2 + h**2 + lead**2)
@@ -68,7 +68,7 @@ def _by_torque(s: Scene, theta: Any, omega_squared: Any) -> tuple[Any, Any, Any]
 
 
 def _friction_by_torque(s: Scene, flat: Any) -> Any:
-    """Return the largest |F|/N on level ground from the flat position to the tip, or inf."""
+    """Return the largest |F|/N of `_by_torque` up to the tip on level ground; huge if N <= 0."""
     theta, flat = np.linspace(0.0, math.pi / 2, 1001), np.asarray(flat)[..., None]
     h, lead, _ = _shape(s, theta)
     start = (s.gyration2 + s.b**2) * flat**2 + 2 * s.gravity * (s.b - h)
@@ -101,7 +101,7 @@ def _small(s: Scene, d: dict[str, Any], name: str) -> float:
 
 
 def _landed(s: Scene, d: dict[str, Any], name: str) -> float:
-    """Return the answer after an impact, if angles in the air are too small by pi/180.
+    """Return the answer after an impact if angles in flight are too small by a factor of pi/180.
 
     The body is placed just above the contact, with the right angular velocity.
     """

@@ -1,4 +1,4 @@
-"""A sheet as a page to print, which also marks answers in the browser; formulas are pictures."""
+"""The printable page of a sheet, which also marks answers in the browser, with formulas as SVG."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from ._marks import key
 from ._tasks import DATA
 
 _SIZE = 10.0  # font size of a formula, in units of its picture
-_SPELLED = (  # TeX as matplotlib needs it
+_SPELLED = (  # replacements for TeX that matplotlib does not accept
     (r"\\tfrac", r"\\frac"), (r"\\frac(\w)", r"\\frac{\1}"), (r"(\\frac{\w})(\w)", r"\1{\2}"),
     (r"\\mathrm (\w)", r"\\mathrm{\1}"), (r"\\([lg])e\b", r"\\\1eq"), (r"\\Big\b|\n", " "),
 )  # fmt: skip
-_ASIDE = re.compile(  # parts with a syntax of their own
+_ASIDE = re.compile(  # code, pictures and formulas, in which no other markup applies
     r"^```\w*\n(?P<pre>.*?)^```$|`(?P<code>[^`]+)`|!\[(?P<alt>.*?)\]\((?P<name>.*?)\)|"
     r"\$\$(?P<display>.+?)\$\$|\$(?P<inline>.+?)\$",
     re.DOTALL | re.MULTILINE,
@@ -51,7 +51,7 @@ def page(markdown: str, seed: int | None, pictures: dict[str, bytes]) -> str:
 
 
 def _marks(number: str, seed: int | None) -> dict[str, Any]:
-    """Return the numbers at which the mark changes, and the marks between them, each once."""
+    """Return the numbers at which the mark changes, and the different marks between them."""
     ends, marks = key(number, seed)
     distinct = list(dict.fromkeys(marks))
     shown = [[mark.points, mark.sentence, mark.mistake] for mark in distinct]

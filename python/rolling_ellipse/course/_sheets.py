@@ -1,4 +1,4 @@
-"""The sheets of the course, with the numbers of a seed."""
+"""The sheets of the course, with numbers that depend on a seed."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def sheet(number: int, *, seed: int | None = None) -> Sheet:
 
 
 def filled(text: str, seed: int | None) -> str:
-    """Return the text of a sheet with its blocks of tasks replaced by the tasks of a seed."""
+    """Return the text of a sheet with the tasks of a seed in place of its own."""
 
     def block(found: re.Match[str]) -> str:
         parts = [_written(numbered(seed)[number]) for number in found[2].split()]

@@ -116,7 +116,7 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
 
 
 def number_in(text: str) -> Any:
-    """Return the number in a text, read as a sheet's page reads it, or the text if it has none."""
+    """Return the number in a text, read as on a sheet's page, or the text if it is not a number."""
     word = text.replace("−", "-", 1)
     is_number = re.fullmatch(DATA["number"], word, re.ASCII)
     return float(word.replace(",", ".")) if is_number else text

@@ -1,4 +1,4 @@
-"""The tasks of the sheets, the film and the impacts: as printed, and with the numbers of a seed."""
+"""The tasks of the sheets, the film and the impacts, as printed or with the numbers of a seed."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .._verbs.simulate import simulate
 DATA = json.loads(resources.files(__package__).joinpath("tasks.json").read_text("utf-8"))
 FILE = "ROLLING_ELLIPSE_IMPACTS"
 _KEPT = ("gravity", "slope", "T", "step")  # the same for all seeds
-_PURE = ("friction", "restitution")  # pure numbers: not equal to a length of the same value
+_PURE = ("friction", "restitution")  # varied separately from lengths of the same value
 _SPREAD = 0.06  # maximum relative difference of numbers from the printed ones
 _MOST = 2**53  # maximum seed: larger ones would not be exact in JSON and in spreadsheets
 _EGG: dict[str, Any] = {"a": 0.035, "b": 0.025}  # the body of the film and of the impacts
@@ -51,7 +51,7 @@ class Task:
     question: str
     unit: str
     data: dict[str, float]
-    source: str  # kind of the answer, and its name in the package
+    source: str  # name of a formula in `_answers`, and of the quantity that it computes
     seed: int | None = None
 
 
@@ -104,7 +104,7 @@ def scene_of(data: dict[str, float]) -> Scene:
 def _draws(seed: int, sheet: str) -> Iterator[Random]:
     """Yield random generators for the numbers of a sheet, one for each attempt.
 
-    For the same text, `random()` returns the same numbers in all versions of Python.
+    With the same text as a seed, `random()` returns the same numbers in all versions of Python.
     """
     return (Random(f"{seed} {sheet} {attempt}") for attempt in count())
 
@@ -120,7 +120,7 @@ def _normal(rng: Random) -> float:
 
 @lru_cache(1024)
 def numbered(seed: int | None) -> dict[str, Task]:
-    """Return the tasks by their numbers."""
+    """Return the tasks for a seed, by number."""
     if seed is None:
         return _PRINTED
     sheets = dict.fromkeys(map(sheet_of, NUMBERS))
@@ -154,7 +154,7 @@ def _slips(motion: Trajectory) -> list[float]:
 def film(seed: int | None = None) -> dict[str, FloatArray]:
     """Return the film of sheet 10: t [s], x, z [m] and theta [rad], as `fit_motion` expects them.
 
-    The film has noise of 0.5 mm and 0.01 rad. Each seed gives another throw.
+    The film has noise of 0.5 mm and 0.01 rad. Each seed gives a different throw.
 
     Raises
     ------
@@ -225,7 +225,7 @@ def measured_impacts(seed: int | None = None) -> tuple[FloatArray, FloatArray]:
 
 @lru_cache(256)
 def _struck(seed: int) -> FloatArray:
-    """Return noisy impacts by Stronge's law, for a body whose k^2 is not that of a plate."""
+    """Return noisy impacts that follow Stronge's law, for a body whose k^2 is not a plate's."""
     rng = next(_draws(seed, "8"))
     law: dict[str, Any] = _EGG | _varied(DATA["law"], rng)
     ranges = DATA["ranges"]

@@ -1,11 +1,11 @@
-/* Marks the answers on a sheet as `rolling_ellipse.course.mark` does, by its own table. */
+/* Marks the answers on a sheet as `rolling_ellipse.course.mark` does, with the key in the page. */
 
-/** Bytes of base64. */
+/** The bytes that a base64 text encodes. */
 function bytes(text) {
     return Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 }
 
-/** The key of a page: numbers at which the marks of each task change, and the marks between. */
+/** The key of a page: for each task, the numbers at which the mark changes, and all its marks. */
 function unhidden([salted, mixed]) {
     const salt = bytes(salted);
     const plain = bytes(mixed).map((byte, place) => byte ^ salt[place % salt.length]);

@@ -65,7 +65,7 @@ class Erratum:
 
 
 def _rolling(theta: float, **other: float) -> dict[str, Any]:
-    """Return the arguments of all equations at the angle theta of a rolling motion."""
+    """Return the arguments of all equations when a rolling motion passes the angle theta."""
     body = _BODY | other
     motion = simulate(Scene(**body, theta=0.2, omega=3.2), 3.0)  # passes through all quadrants
     passing = motion.at(motion.when(theta=theta)[0])

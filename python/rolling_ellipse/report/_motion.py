@@ -152,7 +152,7 @@ def accelerations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names)
 def follow(
     start: Start, t: FloatArray, body: Scene, printed: Names, how: Settings
 ) -> PrintedMotion:
-    """Integrate the equations with the `printed` rows from t = 0; sample them at the times t."""
+    """Integrate the equations with the `printed` rows from t = 0, with samples at the times t."""
 
     def slope(y: FloatArray) -> FloatArray:
         q, q_dot = y[:COORDINATES], y[COORDINATES:]

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from .._ask.check import COORDINATES, FloatArray, choice, coordinates, finite, require_together
 from .._ask.scene import Scene
 
-Names = tuple[str, ...]  # names of rows as printed
+Names = tuple[str, ...]  # names of the rows that are as printed
 Pair = tuple[FloatArray, FloatArray]
 
 #: Parts of the matrix that can be used as printed: the rows of f1, f2, f3 (eq 32), the sign of a44

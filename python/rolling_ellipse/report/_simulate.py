@@ -147,7 +147,7 @@ def simulate(
         return follow(start, times, body, names, settings)
     x, _, theta, _, _ = start.q.tolist()
     scene = replace(body, theta=theta, omega=float(start.q_dot[2]), x=x)
-    off = bool(start.violations) and consistent == "as_given"  # otherwise the scene's own start
+    off = bool(start.violations) and consistent == "as_given"  # otherwise the scene sets the start
     given = (start.q, start.q_dot) if off else None
     trajectory = Trajectory.computed(scene, settings, times, given)
     if not (off and trajectory.status is Status.VALIDITY_LOST):  # the user was already warned
@@ -200,7 +200,7 @@ def _violations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -
 
 
 def _residuals(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> Pair:
-    """Return the residuals of `_NAMES`, and the sums of their terms' magnitudes, (n, 7) each."""
+    """Return the residuals listed in `_NAMES`, and the sums of the |terms| of each, (n, 7)."""
     position = constraints(q, q_dot, a=body.a, b=body.b).position
     _, z, theta, psi, r = np.abs(q).T
     matrix = rows(q, body.a, body.b, printed)

@@ -48,7 +48,7 @@ def animate(
     """Make an exactly timed film of one or several motions, for a file, a window or a notebook.
 
     Frame i shows the motion at t = i · speed / fps and is visible for 1 / fps seconds. The Notes
-    explain how long, fast and several motions are shown.
+    explain how long and fast motions are shown, and how several motions are arranged.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def animate(
         Names of the motions. By default, several motions are named after what differs among them
         (method, model, fields of the scene), otherwise 1, 2, 3.
     t_end : float, optional
-        Last time shown [s]; default: the latest end.
+        Last time shown [s]; default: the end of the longest motion.
     fps : float, optional
         Frames per second, 0.001 to 1000; default: 60 for videos and .html, 50 for .gif and without
         a path. A GIF counts time in 1/100 s, so 100 / fps must be whole and at least 2. The player
@@ -181,7 +181,7 @@ def _check_ax(ax: Any, figure: Any, motions: int, panel: str | None) -> None:
 
 
 def _has_windows() -> bool:
-    """Whether pyplot opens windows; if not, a notebook would show figures beside the player."""
+    """Return whether pyplot opens windows; in a notebook it would draw beside the player."""
     backend = matplotlib.get_backend()
     _, framework = backend_registry.resolve_backend(backend)  # type: ignore[no-untyped-call]
     return framework in WINDOWS

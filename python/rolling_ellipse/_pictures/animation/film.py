@@ -35,7 +35,7 @@ from .movies import Pace, Pixels, ffmpeg, film_suffix, write_gif, write_video
 from .strip import ROW, Strip, cameras, in_rows
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
-TICKS, FIGURES = 0.03, 0.16  # heights: of the ruler over the width, of its numbers [inch]
+TICKS, FIGURES = 0.03, 0.16  # heights of the ruler (share of the width) and its numbers [inch]
 PANEL = 0.36  # height of a panel below the strips, as a share of the width
 _drawing_late = Alone()
 _with_settings = Alone()  # lock for rcParams, which matplotlib's own writers change
@@ -57,13 +57,13 @@ class RollingAnimation(FuncAnimation):
     labels : tuple of str
         Names of the motions.
     clock : Text
-        The time.
+        The text that shows the time.
     figure : Figure or SubFigure
         The figure of the film; it keeps the animation alive. A film that `animate` wrote as .html
         is drawn when this attribute or an artist is first used.
     """
 
-    #: The player as a page and as a fragment of HTML; bound by `_player.film`.
+    #: Functions that return the player as an HTML page or fragment; set by `_player.film`.
     _page: ClassVar[Callable[[RollingAnimation], str]]
     _html: ClassVar[Callable[[RollingAnimation], str]]
 
@@ -96,9 +96,9 @@ class RollingAnimation(FuncAnimation):
     if not TYPE_CHECKING:  # with a __getattr__ type checkers would accept every name
 
         def __getattr__(self, name: str) -> Any:
-            """Draw a film that was only written as a page, when one of its artists is first used.
+            """Draw a film that has only been written as a page, once one of its artists is used.
 
-            A page needs no figure. Collecting the reference cycles of a figure takes long, and a
+            A page needs no figure. It takes long to collect the reference cycles of a figure, and a
             Ctrl-C during that time is lost in the callback of a weak reference.
             """
             with _drawing_late():
@@ -168,7 +168,7 @@ class RollingAnimation(FuncAnimation):
         return [ax.axvline(0.0, color=palette_of(ax).ink, lw=1.5)]
 
     def _fit_captions(self) -> None:
-        """Shrink captions to leave room for the clock, to no less than a third of their size.
+        """Shrink captions, down to a third of their size, to leave room for the clock.
 
         If strips are side by side, the clock is above the captions.
         """
@@ -216,7 +216,7 @@ class RollingAnimation(FuncAnimation):
         """Write the film to a .gif, an .mp4 or .webm (both need ffmpeg), or an .html with a player.
 
         An existing file is replaced only by a complete film. `progress` is as in `animate`.
-        `writer` and `options` are those of matplotlib's `Animation.save`, for another writer.
+        A `writer` and its `options` are passed to matplotlib's `Animation.save`.
         """
         path, count = file_name("filename", filename), self.t.size
         if progress is None:  # 400 frames take two seconds
@@ -248,7 +248,7 @@ class RollingAnimation(FuncAnimation):
         return int(self._root.bbox.width), int(self._root.bbox.height)
 
     def _pixels(self, frames: Sequence[int], advance: Any = None) -> Iterator[Pixels]:
-        """Yield the pixels of each frame in the same buffer; static parts are drawn once."""
+        """Yield the pixels of each frame in one shared buffer; static parts are drawn only once."""
         root, still = self._root, BytesIO()
         seen = [artist for artist in self.draw(frames[0]) if artist.get_visible()]
         for artist in seen:
@@ -274,7 +274,7 @@ class RollingAnimation(FuncAnimation):
         """Return the player's HTML, or what matplotlib's `rcParams["animation.html"]` requests.
 
         For a film that is too long for the player, return a sentence with the reason. A film with a
-        panel is shown by matplotlib's player of pictures.
+        panel is shown in matplotlib's own player.
         """
         wanted = rcParams["animation.html"]
         if wanted == "none" and not self.panel:

@@ -1,7 +1,4 @@
-"""The files of animations: their formats, their pace, and how pixels are written to them.
-
-The pace of a film is its frames per second, seconds of motion per second, and each frame's time.
-"""
+"""The formats of film files, the pace of a film, and functions that write pixels to a file."""
 
 from __future__ import annotations
 
@@ -28,7 +25,7 @@ from ..._ask.check import FloatArray, file_name, positive, whole_within
 from ..._motion.samples import even_times
 from ..._motion.trajectory import Trajectory
 
-Pixels = NDArray[np.uint8]  # a picture, (height, width, 4)
+Pixels = NDArray[np.uint8]  # shape (height, width, 4)
 ENCODERS = {  # ffmpeg's encoders, with options for small files of good quality
     ".mp4": ("h264",),
     ".webm": ("libvpx-vp9", "-crf", "34", "-b:v", "0", "-deadline", "realtime", "-cpu-used", "6"),
@@ -37,17 +34,17 @@ SUFFIXES = (".gif", *ENCODERS, ".html")
 MOST_FRAMES = 1_000_000
 FPS, SPEEDS = (1e-3, 1e3), (1e-12, 1e12)
 GIF_FPS, VIDEO_FPS = 50.0, 60.0  # a GIF's frames last at least 2/100 s
-# Longest films [s] if the speed is free. All frames of a GIF are in memory at once.
+# Longest films [s] if no speed is given. All frames of a GIF are in memory at once.
 LONGEST_GIF, LONGEST_VIDEO = 30.0, 60.0
 PARTS = 5  # maximum number of parts of a longer film
 BACKWARDS = math.pi / 2  # turn per frame [rad] beyond which an ellipse seems to roll backwards
 
 
 def write_gif(path: Path, frames: Iterable[Pixels], fps: float, colours: Pixels) -> None:
-    """Write a GIF with exact delays and one palette for all `colours`, which keeps it small."""
+    """Write a GIF with exact delays; one palette, computed from `colours`, keeps it small."""
     delay = gif_delay(fps)
     assert delay is not None
-    # maximum coverage keeps the colours of thin lines, and merges those near an area's colour
+    # MAXCOVERAGE keeps the colours of thin lines, and merges colours close to that of an area
     palette = Image.fromarray(colours).convert("RGB").quantize(64, Image.Quantize.MAXCOVERAGE, 1)
     first, *rest = (  # all frames are held as palette images: RGB takes three times the memory
         Image.fromarray(pixels).convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE)
@@ -59,7 +56,7 @@ def write_gif(path: Path, frames: Iterable[Pixels], fps: float, colours: Pixels)
 def write_video(
     path: Path, frames: Iterable[Pixels], fps: float, size: tuple[int, int], name: str
 ) -> None:
-    """Write frames of `size` (width, height) as a video with ffmpeg; errors show `name`."""
+    """Write frames of `size` (width, height) as a video; error messages call the file `name`."""
     command = [
         ffmpeg(), "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba",
         "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:.17g}", "-i", "-",
@@ -88,7 +85,7 @@ def write_video(
 def gif_delay(fps: float) -> int | None:
     """Return the delay between frames of a GIF [1/100 s], or None if a GIF cannot have it.
 
-    The delay is a whole number of two bytes, and at least 2, as viewers slow down shorter delays.
+    A GIF stores the delay as a whole number in two bytes; viewers prolong delays below 2.
     """
     delay = round(100 / fps)
     return delay if 2 <= delay < 2**16 and math.isclose(delay * fps, 100, rel_tol=1e-12) else None
@@ -97,7 +94,7 @@ def gif_delay(fps: float) -> int | None:
 def film_suffix(path: str | PathLike[str], fps: float, argument: str = "path") -> str:
     """Return the suffix of a file, which determines its format.
 
-    Raise the errors of `animate` about the file before anything is written.
+    Raise the errors that `animate` documents for the file, before anything is written.
     """
     target = Path(file_name(argument, path))
     suffix = target.suffix.lower()
@@ -142,9 +139,9 @@ def ffmpeg() -> str:
 class Pace:
     """Frames per second, seconds of motion per second of film, and the time each frame shows [s].
 
-    Clocks show that time to `decimals` places. `parts` are the stretches of time that the film
-    shows in turn [s], `first` is, for each frame, the first frame of its part. At speeds above
-    `fastest` the body would seem to roll backwards.
+    The clock shows that time to `decimals` places. `parts` are the time intervals that the film
+    shows one after the other [s], and `first` has the first frame of each frame's part. At speeds
+    above `fastest` the body would seem to roll backwards.
     """
 
     fps: float
@@ -160,9 +157,9 @@ def pace(
     path: str | PathLike[str] | None, motions: Sequence[Trajectory], last: float, *,
     fps: float | None, speed: float | None, max_frames: int | None,
 ) -> Pace:  # fmt: skip
-    """Return the frames that show motions up to the time `last` [s], as documented in `animate`.
+    """Return the pace of a film up to the time `last` [s], as documented in `animate`.
 
-    Without a path the frame rate is that of a GIF, which every format supports.
+    Without a path the default frame rate is that of a GIF, which every format supports.
     """
     video = path is not None and not file_name("path", path).lower().endswith(".gif")
     fps = (VIDEO_FPS if video else GIF_FPS) if fps is None else within("fps", fps, *FPS)
@@ -198,14 +195,14 @@ def pace(
 
 
 def _spin(motion: Trajectory, last: float, fps: float) -> float:
-    """Return the largest mean angular velocity over four frames or more [rad/s]."""
+    """Return the largest mean |omega| over intervals of at least four frames [rad/s]."""
     count = int(min(max(last * fps / 4, 1), 1024))
     at = motion.sol(even_times(0.0, min(last, float(motion.t[-1])), count + 1))
     return float(np.max(np.abs(np.diff(at.theta)) / np.maximum(np.diff(at.t), 1e-300)))
 
 
 def _parts(motions: Sequence[Trajectory], last: float, span: float) -> list[float]:
-    """Return start times of parts of length `span`: at the start, end, two events and middle."""
+    """Return the start times of disjoint parts of length `span`: start, end, two events, middle."""
     events = sorted(each.t - span / 4 for motion in motions for each in motion.events)
     events = [start for start in events if span <= start <= last - 2 * span]
     starts: list[float] = []
@@ -216,7 +213,10 @@ def _parts(motions: Sequence[Trajectory], last: float, span: float) -> list[floa
 
 
 def _decimals(step: float) -> int:
-    """Return how many decimals show multiples of a step [s] exactly, or else to two digits."""
+    """Return the number of decimals that show multiples of a step [s] exactly.
+
+    If there is no such number, return how many show two significant digits of the step.
+    """
     own = max(0, 1 - math.floor(math.log10(step)))
     sizes = ((digits, step * 10**digits) for digits in range(own + 3))
     return next((k for k, n in sizes if math.isclose(n, max(1, round(n)), rel_tol=1e-9)), own)

@@ -1,4 +1,4 @@
-"""The body of one motion on the ground in the frames of an animation, and the cameras' views."""
+"""The strips of an animation, each with one body on the ground, and the views of its cameras."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ...geometry import support
 from .. import ground as drawing
 from ..palette import palette_of
 
-BEHIND, AHEAD = 5.0, 4.0  # ground shown on either side of a followed motion [body sizes]
+BEHIND, AHEAD = 5.0, 4.0  # ground shown left and right of a followed body [longer semi-axes]
 ROW = 0.18  # height of each further row of a caption [inch]
 FADES = 1.2  # how long a blow is visible [s of film]
 
@@ -50,7 +50,7 @@ class Cameras:
 
 
 def in_rows(label: str) -> str:
-    """Return a label with its facts in rows, for the narrow strips side by side."""
+    """Return a label with each fact on its own line, for narrow strips that are side by side."""
     return re.sub(r", (?![^(]*\))", "\n", label)
 
 
@@ -102,7 +102,7 @@ def cameras(
 
 
 def _below(motion: Trajectory) -> FloatArray:
-    """Return the points on the ground below the centre, in axes of the picture, shape (n, 2)."""
+    """Return the points of the ground below the centre, in axes of the page [m], shape (n, 2)."""
     along = np.column_stack([motion.x, np.zeros_like(motion.x)])
     return np.array(drawing.tilted(motion.scene).transform(along))
 
@@ -110,14 +110,14 @@ def _below(motion: Trajectory) -> FloatArray:
 def _framed(
     ends: _Ends, depths: list[_Ends], shape: float | None, head: float, foot: float, narrow: bool
 ) -> tuple[tuple[View, ...], tuple[float, ...], float]:
-    """Return windows at one scale that fill a column of strips, their heights, and the shape."""
+    """Return the windows of a column of strips, all at one scale, their heights, and the shape."""
     length, strips = ends[1] - ends[0], len(depths)
     needed, texts = sum(top - bottom for bottom, top in depths), strips * (head + foot)
     flattest, tallest = (0.25, 0.55) if strips == 1 else (0.16 * strips, max(1.0, 0.2 * strips))
-    tallest += texts * narrow  # narrow strips have texts in rows
+    tallest += texts * narrow  # captions of narrow strips have several rows
     shape = shape or min(max(needed / length + texts, flattest), tallest)
     wide = max(length, needed / max(shape - texts, shape / 4))
-    foot = min(foot, shape / (2 * strips))  # the body keeps half of a low strip
+    foot = min(foot, shape / (2 * strips))  # leave half of a low strip to the body
     air, sky = (wide - length) / 2, wide * (shape / strips - foot) - needed / strips
     depths = [(bottom - foot * wide, top + sky) for bottom, top in depths]
     left, right = ends[0] - air, ends[1] + air
@@ -128,8 +128,8 @@ def _framed(
 class Strip:
     """The body of one motion on the ground, frame by frame.
 
-    It is strip k of a `film`, a RollingAnimation. Frame i shows sample i of the motion (a motion
-    that ends earlier stays at its last sample); traces start with the current part of the film.
+    It is strip k of `film`, a RollingAnimation. Frame i shows sample i of the motion; after the end
+    of the motion it shows the last sample. Traces start with the current part of the film.
 
     The data of `body`, `axis_a`, `axis_b`, `tip` (the end of axis a that lies on the right at
     theta = 0), `contact`, `slip`, `shadow`, `centre_trace`, `tip_trace` and `skid_trace` are in
@@ -187,7 +187,7 @@ class Strip:
         tip, touching, centre = drawing.tip(motion), contact_points(motion), (motion.x, motion.z)
         skids = contact_points(motion, sliding=True)
         self._traces = {self.skid_trace: skids, self.tip_trace: tip, self.centre_trace: centre}
-        self._marks = {self.tip: tip, self.contact: touching, self.slip: skids}  # at a single frame
+        self._marks = {self.tip: tip, self.contact: touching, self.slip: skids}  # only at frame i
 
     def draw(self, i: int) -> list[Artist]:
         """Move every artist to its position in frame i, and return the moving ones."""
@@ -249,7 +249,7 @@ class Strip:
             name.set(text=text, position=place, alpha=alpha)
 
     def _shadow(self, i: int) -> tuple[list[float], list[float]]:
-        """Return x and z of the shadow's ends below the body, or none if it is on the ground."""
+        """Return x and z of the ends of the shadow; empty if the body is on the ground."""
         if self.motion.mode[i] != Mode.FLIGHT:
             return [], []
         scene, x = self.motion.scene, float(self.motion.x[i])
@@ -257,7 +257,7 @@ class Strip:
         return [x - half, x + half], [0.0, 0.0]
 
     def widest_caption(self) -> float:
-        """Return the width of the longest row of the captions of all frames [pixels]."""
+        """Return the width of the longest row among the captions of all frames [pixels]."""
         self.caption.set_text(max("\n".join(self._captions).split("\n"), key=len))
         return float(self.caption.get_window_extent().width)
 

@@ -1,7 +1,7 @@
 """Newton with its solver SolverMuJoCo, which is made for robots, and the body of `Scene.to_mjcf`.
 
 Contacts have the settings of `adapters.mujoco`; numbers are in single precision. The first call
-compiles code for minutes.
+takes minutes, because it compiles code.
 """
 
 import newton
