@@ -11,6 +11,7 @@ from pathlib import Path
 import common
 import numpy as np
 import sksundae
+from pages import table
 from rolling_ellipse import benchmark
 
 PAGE = Path(__file__).parents[1] / "benchmark_dae.md"
@@ -56,8 +57,8 @@ def outcome(problem: benchmark.Problem, dae: benchmark.Dae, found, states) -> tu
 
 def ida() -> str:
     """Run IDA on all problems, and return the table of results."""
-    lines = ["| problem | form | tolerance | in the test | error | F | J | s | outcome |"]
-    lines += ["|---|---|---|---|---|---|---|---|---|"]
+    head = ("problem", "form", "tolerance", "in the test", "error", "F", "J", "s", "outcome")
+    rows = []
     solve = solver("sksundae")
     for name in NAMES:
         problem = benchmark.problem(name)
@@ -69,16 +70,16 @@ def ida() -> str:
             seconds = time.perf_counter() - begun
             error, said = outcome(problem, dae, found, found.y)
             row = name, form, rtol, which, error, found.nfev, found.njev, f"{seconds:.2g}", said
-            lines.append(f"| {' | '.join(map(str, row))} |")
-            print(lines[-1], flush=True)
+            rows.append(row)
+            print(*row, flush=True)
     on = common.machine()
     versions = f"scikit-sundae {sksundae.__version__}, SUNDIALS {sksundae.SUNDIALS_VERSION}"
-    return "\n".join(lines) + f"\n\n{versions}, on {on['processor']}, {on['date']}.\n"
+    return table(head, rows) + f"\n{versions}, on {on['processor']}, {on['date']}.\n"
 
 
 def radau() -> str:
     """Run solve_dae on three problems, and return the table of results."""
-    lines = ["| problem | form | error | F | J | LU | outcome |", "|---|---|---|---|---|---|---|"]
+    rows = []
     solve = solver("solve_dae")
     for name in ("roll.circle", "roll.roll", "brink.over"):
         problem = benchmark.problem(name)
@@ -88,14 +89,15 @@ def radau() -> str:
             found = solve(dae, times[times <= 5], 1e-8)
             error, said = outcome(problem, dae, found, np.transpose(found.y))
             row = name, form, error, found.nfev, found.njev, found.nlu, said
-            lines.append(f"| {' | '.join(map(str, row))} |")
-            print(lines[-1], flush=True)
-    return "\n".join(lines) + f"\n\nsolve_dae {version('solve_dae')}.\n"
+            rows.append(row)
+            print(*row, flush=True)
+    head = ("problem", "form", "error", "F", "J", "LU", "outcome")
+    return table(head, rows) + f"\nsolve_dae {version('solve_dae')}.\n"
 
 
 def reference() -> str:
     """Return the table of the states at the last scored time."""
-    lines = []
+    rows = []
     for name in NAMES:
         problem = benchmark.problem(name)
         at = np.flatnonzero(problem.times == scored(problem)[-1])[0]
@@ -103,6 +105,5 @@ def reference() -> str:
         psi, r = problem.dae(3).exact(problem.times[at])[3:5]
         forces = {"λ1": problem.friction_force[at], "λ2": problem.normal_force[at]}
         row = {"problem": name, "t": problem.times[at], **state, "ψ": psi, "r": r, **forces}
-        lines.append([f"{one:.16g}" if isinstance(one, float) else one for one in row.values()])
-    head = [list(row), ["---"] * len(row)]
-    return "".join(f"| {' | '.join(row)} |\n" for row in (*head, *lines))
+        rows.append([f"{one:.16g}" if isinstance(one, float) else one for one in row.values()])
+    return table(list(row), rows)

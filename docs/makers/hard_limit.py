@@ -23,11 +23,11 @@ rolling resistance with the sign of omega. There are two laws for N:
 
 import csv
 import math
-import re
 import sys
 from pathlib import Path
 
 import numpy as np
+from pages import table, with_part
 
 DOCS = Path(__file__).resolve().parents[1]
 PAGE, DATA = DOCS / "your_tests.md", DOCS / "data"
@@ -275,12 +275,7 @@ def tables():
     """Return the marked parts of the page, by name."""
     rows, rungs = read("hard_limit.csv"), read("stiffness.csv")
     number = "{:.15g}".format
-    impacts = [
-        ["case", "e", "μ", "latch", "dashpot", "ẋ [m/s]", "ż [m/s]", "ω [rad/s]", "angle [rad]"]
-    ]
-    lasting = [
-        ["case", "μ", "lever [m]", "dashpot", "t [s]", "x [m]", "θ [rad]", "ẋ [m/s]", "ω [rad/s]"]
-    ]
+    impacts, lasting = [], []
     for row in rows:
         latch, dashpot = (limit(row, law, rungs) for law in ("latch", "dashpot"))
         after = {name: number(row[name]).replace("nan", "–") for name in (*AFTER, "angle")}
@@ -294,22 +289,12 @@ def tables():
         else:
             answers = [after[name] for name in (*AFTER[:4], "omega_after")]
             lasting.append([case, mu, lever, dashpot, *answers])
-    return {"impacts": table(impacts), "lasting": table(lasting)}
-
-
-def table(lines):
-    lines.insert(1, ["---"] * len(lines[0]))
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
-def with_part(page, name, made, maker):
-    """Return a page with the text between the marks of a part replaced."""
-    mark = f"<!-- {name}: made by docs/makers/{maker} -->\n"
-    part = re.compile(f"({mark}).*?(<!-- end of {name} -->)", re.DOTALL)
-    page, count = part.subn(lambda found: found[1] + made + found[2], page)
-    if count != 1:
-        raise ValueError(f"the page must have one {mark!r}, got {count}")
-    return page
+    return {
+        "impacts": table(("case", "e", "μ", "latch", "dashpot", "ẋ [m/s]", "ż [m/s]", "ω [rad/s]",
+                          "angle [rad]"), impacts),
+        "lasting": table(("case", "μ", "lever [m]", "dashpot", "t [s]", "x [m]", "θ [rad]",
+                          "ẋ [m/s]", "ω [rad/s]"), lasting),
+    }  # fmt: skip
 
 
 def with_tables(page):

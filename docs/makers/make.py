@@ -36,6 +36,7 @@ from typing import Any
 
 import nbformat
 from nbclient import NotebookClient
+from pages import table, with_part
 from rolling_ellipse import Scene, WorkPrecision, benchmark, simulate
 from rolling_ellipse._motion.export.strict import in_lines
 from rolling_ellipse.benchmark.adapters import engine
@@ -202,22 +203,13 @@ def quoted(page: str) -> str:
     if not found:
         raise ValueError(f"the page must have a mark of {', '.join(parts)}")
     for name in found:
-        page = with_part(page, name, parts[name]())
+        page = with_part(page, name, parts[name](), "make.py")
     return page
 
 
-def with_part(page: str, name: str, made: str) -> str:
-    """Return a page with the text between the marks of a part replaced."""
-    begin, end = f"<!-- {name}: made by docs/makers/make.py -->\n", f"<!-- end of {name} -->\n"
-    before, _, rest = page.partition(begin)
-    _, closed, after = rest.partition(end)
-    if not closed:
-        raise ValueError(f"the page must have {begin!r} and {end!r}")
-    return before + begin + made + end + after
-
-
 def write_part(path: Path, name: str, made: str) -> None:
-    path.write_text(with_part(path.read_text(encoding="utf-8"), name, made), encoding="utf-8")
+    page = path.read_text(encoding="utf-8")
+    path.write_text(with_part(page, name, made, "make.py"), encoding="utf-8")
 
 
 def speed() -> str:
@@ -235,24 +227,20 @@ def speed() -> str:
             where, _, length = what.partition(", ")
             behind += [lost(line, f"{length} {where}", bench_peers.AHEAD) for line in said]
     drawn = WorkPrecision.load(DATA / "peers_R_10.37.json")
-    lines = table(["best peer's time / package's best, error up to",
-                   *(f"{d:.0e}" for d in COLUMNS)], rows)  # fmt: skip
-    if any("*" in line for line in lines[2:]):
-        lines.append("\n\\* relative to the peers that were run; for the others no time was left")
+    head = ["best peer's time / package's best, error up to", *(f"{d:.0e}" for d in COLUMNS)]
+    body = table(head, rows)
+    if any("*" in cell for row in rows for cell in row):
+        body += "\n\\* relative to the peers that were run; for the others no time was left\n"
     on = drawn.machine
     stamp = f"Least of {on['rounds']} rounds on {on['processor']}, {on['vectors']}, {on['date']}"
     beside = "".join(f"{word} {on[of]}" for of, word in STAMPS.items() if of in on)
     if behind:
-        lines.append("\nA peer is ahead in these races, because its few steps cost less than the "
-                     "initial work of `flow`:\n")  # fmt: skip
         head = ["race", "peer", "errors", "times as fast as `flow`", "steps of the peer"]
-        lines += table(head, behind)
-    body = "\n".join([*lines, *calls()])
-    return f"{chart(drawn, bool(behind))}\n\n{body}\n\n{stamp}{beside}.\n"
-
-
-def table(head: list[str], rows: list[list[str]]) -> list[str]:
-    return [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
+        body += (
+            "\nA peer is ahead in these races, because its few steps cost less than the initial "
+            f"work of `flow`:\n\n{table(head, behind)}"
+        )
+    return f"{chart(drawn, bool(behind))}\n\n{body}{calls()}\n{stamp}{beside}.\n"
 
 
 def chart(race: WorkPrecision, behind: bool) -> str:
@@ -283,16 +271,16 @@ def lost(line: str, race: str, ahead: str) -> list[str]:
     return [race, line.partition(ahead)[0], errors, factors, steps]
 
 
-def calls() -> list[str]:
-    """Return a table of call times of the package and the fastest peers, if there is a file."""
+def calls() -> str:
+    """Return a table of call times of the package and the fastest peers, or "" without a file."""
     path = DATA / "calls.json"
     if not path.exists():
-        return []
+        return ""
     known = json.loads(path.read_text(encoding="utf-8"))["R"]
     own = ("flow", "exact")
     peers = sorted(known.keys() - {*own}, key=lambda name: known[name][1])[:3]
     rows = [[name, *(f"{1e6 * each:.3g}" for each in known[name])] for name in (*own, *peers)]
-    return ["", *table(["a call [µs]", "empty", "a known scene", "a new scene"], rows)]
+    return "\n" + table(["a call [µs]", "empty", "a known scene", "a new scene"], rows)
 
 
 def lead() -> str:
@@ -311,7 +299,7 @@ def others() -> str:
     """Return a table that compares other programs with the package, with a number for each."""
     race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
-    rows = [["program", "what it does", "compared with this package"]]
+    rows = []
     for name in ("SciPy", "heyoka"):
         best = min(time for contender, time in least.items() if contender.startswith(name))
         ratio = float(f"{best / least['flow']:.3g}")
@@ -329,7 +317,7 @@ def others() -> str:
     off = abs(simulate(ball, 1.0).events[0].t - POOLTOOL)
     figure = f"its ball slips for {POOLTOOL:.6f} s; a circle here agrees to within {off:.0e} s"
     rows.append(["pooltool", "circles (balls), exactly", figure])
-    return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], ["---"] * 3, *rows[1:])) + "\n"
+    return table(("program", "what it does", "compared with this package"), rows)
 
 
 def half_turns(path: Path) -> float:
@@ -369,12 +357,11 @@ def engine_table() -> str:
         for score in found["scores"]:
             cells.setdefault(score["problem"], []).append(engine_cell(score))
     rows = [[f"`{problem}`", *row] for problem, row in cells.items()]
-    table = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
     stamp = (
         f"All runs together took {seconds:.0f} s on {on['processor']}, {on['date']}. "
         "[`engines.json`](data/engines.json) has every score."
     )
-    return "\n".join([*table, "", *lines, "", stamp]) + "\n"
+    return "\n".join([table(head, rows), *lines, "", stamp]) + "\n"
 
 
 def engine_cell(score: dict[str, Any]) -> str:

@@ -12,7 +12,8 @@ import re
 import sys
 from importlib.metadata import version
 
-from hard_limit import DATA, PAGE, with_part
+from hard_limit import DATA, PAGE
+from pages import with_part
 
 PARTS = {  # code blocks to run first, the block that prints, and the packages used
     "gradients": (("mujoco", "mjx"), "program", ("mujoco", "mujoco-mjx", "jax")),

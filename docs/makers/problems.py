@@ -12,6 +12,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
+from pages import table
 from rolling_ellipse import benchmark
 
 DOCS = Path(__file__).resolve().parents[1]
@@ -69,11 +70,6 @@ def listed() -> str:
     ]  # fmt: skip
     head = ("problem", "question", "needs", "T [s]", "largest condition")
     return table(head, rows)
-
-
-def table(head: tuple[str, ...], rows: list[Any]) -> str:
-    lines = [head, ("---",) * len(head), *rows]
-    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
 
 
 def worst(data: Any) -> str:

@@ -2,7 +2,6 @@
 
 import math
 import re
-import runpy
 import shutil
 import subprocess
 import sys
@@ -11,12 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.paths import ROOT
+from oracles.paths import ROOT, made_by
 from rolling_ellipse import Scene, benchmark, geometry, impacts, simulate
 
 PAGE = (ROOT / "docs" / "your_tests.md").read_text(encoding="utf-8")
 BLOCKS = dict(re.findall(r"<!-- (\S+) -->\n```python\n(.*?)```", PAGE, re.DOTALL))
-MAKER = runpy.run_path(str(ROOT / "docs" / "makers" / "hard_limit.py"))
+MAKER = made_by("hard_limit")
 TABLE, RUNGS = MAKER["read"]("hard_limit.csv"), MAKER["read"]("stiffness.csv")
 SPEEDS = ("x_dot", "z_dot", "omega")
 

@@ -2,14 +2,13 @@
 
 import math
 import re
-import runpy
 from typing import Any
 
 import numpy as np
 import pytest
 from course.by_hand import Given
 from oracles.contact import response
-from oracles.paths import ROOT
+from oracles.paths import ROOT, made_by
 from rolling_ellipse import course
 
 FOLDER = ROOT / "docs/course"
@@ -17,7 +16,7 @@ TASK = re.compile(r"\*\*(\d+\.\d)\*\* (−?\d+\.?\d*)")
 
 
 def test_the_sheets_contain_the_tasks() -> None:
-    for number, path in enumerate(runpy.run_path(str(ROOT / "docs/makers/course.py"))["SHEETS"], 1):
+    for number, path in enumerate(made_by("course")["SHEETS"], 1):
         assert course.sheet(number).markdown == path.read_text(encoding="utf-8"), path.name
 
 

@@ -1,13 +1,12 @@
 """Tables of all common trackers become tracks in metres, radians and seconds."""
 
 import math
-import runpy
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from oracles.paths import ROOT
+from oracles.paths import ROOT, made_by
 from rolling_ellipse import Scene, fit_motion, read_track, simulate
 
 DATA = ROOT / "docs" / "data"
@@ -125,6 +124,6 @@ def test_a_scene_is_fitted_to_two_tracked_points() -> None:
 
 
 def test_the_tracks_equal_those_written_by_their_script() -> None:
-    maker = runpy.run_path(str(ROOT / "docs" / "makers" / "tracks.py"))
+    maker = made_by("tracks")
     for name, make in (("track_tracker.txt", "tracker"), ("track_points.csv", "points")):
         assert (DATA / name).read_text(encoding="utf-8") == maker[make]()

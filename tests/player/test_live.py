@@ -4,7 +4,6 @@ import gzip
 import json
 import math
 import os
-import runpy
 import shutil
 import subprocess
 import sys
@@ -18,7 +17,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.contact import random_scenes
-from oracles.paths import ROOT, TESTS
+from oracles.paths import ROOT, TESTS, made_by
 from rolling_ellipse import _core
 from rolling_ellipse._ask.settings import DEFAULTS
 from rolling_ellipse._player import blows, explorer
@@ -201,7 +200,7 @@ def test_the_map_is_computed_only_in_view(opened: Opened) -> None:
 
 
 def test_sliders_change_the_motion_and_code_and_link_reproduce_it(opened: Opened) -> None:
-    write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
+    write = made_by("live")["page"]
     page = opened(write(rl.explore(rl.scenes.jump)), reduced_motion="reduce")
     for name in page.evaluate(f"{PLAYER}.rows.map(({{ name }}) => name)"):
         before = page.evaluate(f"{PLAYER}.found")
@@ -233,7 +232,7 @@ def test_sliders_change_the_motion_and_code_and_link_reproduce_it(opened: Opened
 
 
 def test_a_link_from_before_rolling_resistance_opens_its_scene(opened: Opened) -> None:
-    write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
+    write = made_by("live")["page"]
     page = opened(write(rl.explore(rl.scenes.report)), reduced_motion="reduce")
     link = (TESTS / "export" / "old_files" / "link.txt").read_text(encoding="utf-8").strip()
     page.evaluate("(link) => { location.hash = link; location.reload(); }", link)
@@ -260,7 +259,7 @@ def test_a_link_of_a_scene_opens_its_motion_and_the_link_of_the_page_its_scene(
     opened: Opened,
 ) -> None:
     """The page rounds heights, inertias and slips, so only times before many impacts agree."""
-    write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
+    write = made_by("live")["page"]
     page = opened(write(rl.explore(rl.scenes.report)), reduced_motion="reduce")
     times = [0.0, 0.5, 1.0]
     for name, scene in LINKED.items():

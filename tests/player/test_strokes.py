@@ -2,14 +2,13 @@
 
 import html
 import math
-import runpy
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from oracles.paths import ROOT
+from oracles.paths import made_by
 
 Opened = Callable[..., Any]
 PLAYER = "document.querySelector('.rolling-ellipse').player"
@@ -33,7 +32,7 @@ def explored(opened: Opened, scene: rl.Scene = rl.scenes.report, **options: Any)
 
 
 def live(opened: Opened) -> Any:
-    write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
+    write = made_by("live")["page"]
     return opened(write(rl.explore(rl.scenes.report)), reduced_motion="reduce")
 
 

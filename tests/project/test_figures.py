@@ -3,17 +3,16 @@
 import hashlib
 import json
 import re
-import runpy
 from pathlib import Path
 from typing import Any
 
 import pytest
-from oracles.paths import ROOT
+from oracles.paths import ROOT, made_by
 from PIL import Image
 from rolling_ellipse import WorkPrecision
 
 DOCS = ROOT / "docs"
-DATA, MAKERS = DOCS / "data", DOCS / "makers"
+DATA = DOCS / "data"
 PROSE = {
     name: (ROOT / name).read_text(encoding="utf-8")
     for name in ("README.md", "docs/index.md", "docs/start.md", "docs/speed.md",
@@ -29,7 +28,7 @@ MARKED = re.compile(r"<!-- (\w+): made by .*?<!-- end of \1 -->", flags=re.DOTAL
 @pytest.fixture(scope="module")
 def make() -> dict[str, Any]:
     pytest.importorskip("nbclient")  # its dependencies have no wheel without the GIL
-    return runpy.run_path(str(MAKERS / "make.py"))
+    return made_by("make")
 
 
 def cells(path: Path, kind: str) -> list[Any]:
@@ -68,9 +67,9 @@ def test_the_chart_shows_the_data(name: str) -> None:
 
 
 def test_the_problem_pages_agree_with_their_data(make: dict[str, Any]) -> None:
-    made = runpy.run_path(str(MAKERS / "problems.py"))
+    made = made_by("problems")
     page = (DOCS / "benchmark.md").read_text(encoding="utf-8")
-    listed = make["with_part"](page, "problems", made["listed"]())
+    listed = make["with_part"](page, "problems", made["listed"](), "make.py")
     assert listed == page, "docs/makers/make.py problems"
     pages, folder = made["pages"](), DOCS / "problems"
     assert {path.stem for path in folder.glob("*.md")} == set(pages) and len(pages) == 22

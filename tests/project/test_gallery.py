@@ -1,7 +1,6 @@
 """The lines of code in the gallery are those that made its pictures."""
 
 import itertools
-import runpy
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from numpy.typing import NDArray
-from oracles.paths import ROOT
+from oracles.paths import ROOT, made_by
 from PIL import Image
 
 FOLDER = ROOT / "docs" / "gallery"
@@ -23,7 +22,7 @@ ALIKE = 2.0
 
 @pytest.fixture(scope="module")
 def maker() -> dict[str, Any]:
-    return runpy.run_path(str(ROOT / "docs" / "makers" / "gallery.py"))
+    return made_by("gallery")
 
 
 def small(path: Path) -> NDArray[np.float64]:
