@@ -84,8 +84,8 @@ py::array_t<Number> array_of(const std::vector<Number>& values) {
     return array;
 }
 
-// Both throw std::invalid_argument, naming the array, if its shape is wrong. require_matrix accepts
-// any number of rows unless one is given, and returns the number of rows.
+// Both throw std::invalid_argument, naming the array, if its shape is wrong. require_matrix returns
+// the number of rows; it accepts any number unless `rows` is given.
 void require_length(const std::string& name, const Array& array, py::ssize_t n);
 py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns,
                            std::optional<py::ssize_t> rows = {});

@@ -97,7 +97,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     return answer;
 }
 
-// The ending and the counts of an answer, and the numbers of its entries in the joined lists.
+// The ending, model and method of an answer as codes, its counts, and the lengths of its lists.
 std::vector<Figure> codes_of(const Answer& answer) {
     const Solution& solution = answer.solution;
     std::vector<Figure> codes{{"ending", answer.ending},
@@ -200,9 +200,9 @@ std::pair<std::optional<State>, double> reached_by(const Solution& solution, dou
     return {last.state, t};
 }
 
-// The end of each motion. `states` contains the state (NaN if there is none), its time and the
-// largest normal impulse of the impacts; `codes` contains the mode, the number of events, the kind
-// of the first event, the ending and the number of impacts (-1 for none).
+// The end of each motion. `states` contains the state, its time and the largest normal impulse of
+// the impacts; `codes` contains the mode, the number of events, the kind of the first event, the
+// ending and the number of impacts. Missing values are NaN or -1.
 py::dict ends_table(const Array& scenes, const Settings& settings, const Array& times,
                     int workers) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
@@ -248,7 +248,7 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
     return py::dict("states"_a = states, "codes"_a = codes);
 }
 
-// The bodies of the scenes, one per row.
+// The values of `body_of` for each scene, one row per scene.
 Array bodies(const Array& scenes) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
     Array found = matrix(n, body_of({}).size());
@@ -258,7 +258,7 @@ Array bodies(const Array& scenes) {
     return found;
 }
 
-// The friction that each scene needs to roll forever, or to lie still.
+// The friction that each body needs to roll forever, or to lie still.
 Array friction_table(const Array& scenes, bool to_rest, int workers) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
     Array needed = vector(n);

@@ -17,8 +17,8 @@
 namespace rolling_ellipse::bindings {
 
 // Binds a class of the core. Its objects cannot be pickled or copied; the Python objects that own
-// them create new ones instead. Without this `__reduce__`, pybind11 would abort the process under
-// pickle protocols 0 and 1.
+// them create new ones instead. Without `__reduce__`, pybind11 would abort the process under pickle
+// protocols 0 and 1.
 template <class T>
 py::class_<T> bind_class(py::module_& m, const char* name) {
     py::class_<T> bound(m, name);
@@ -99,8 +99,8 @@ inline std::array<double, 7> body_of(const Scene& scene) {
 // The state given by arrays q and q_dot of shape (5,); other shapes are rejected.
 CoordinateState single_state(const Array& q, const Array& q_dot);
 
-// An event as a row of numbers: t, the code of its kind, and the states before and after, each with
-// the code of its mode.
+// An event as a row of numbers: t, the code of its kind, the states before and after, each with the
+// code of its mode, and the start_fields.
 inline constexpr std::size_t event_numbers =
     2 + 2 * (std::size(state_fields) + 1) + std::size(start_fields);
 using EventRow = std::array<double, event_numbers>;
@@ -108,10 +108,10 @@ py::tuple event_columns();
 Array event_rows(const std::vector<Event>& events);
 Event event_of(const EventRow& row);
 
-// The number of the given ascending times that lie within the solution.
+// How many of the ascending times lie within the solution.
 py::ssize_t reached(const Solution& solution, const double* times, py::ssize_t n);
 
-// Arrays of theta, omega and x of n samples.
+// Arrays of theta, omega and x for n samples.
 struct FlowArrays {
     explicit FlowArrays(py::ssize_t n) : theta(vector(n)), omega(vector(n)), x(vector(n)) {}
 

@@ -25,7 +25,7 @@ py::object classify_array(py::ssize_t n, const std::array<Array, 7>& arguments, 
     return computed(n, outcome_at, workers)[0];
 }
 
-// Outcomes of a scene on level ground for each of n blows that replace its own: jx, jz, dx, dz.
+// Outcomes of a scene on level ground, with each of n blows (jx, jz, dx, dz) in place of its own.
 py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Array, 4>& impulses) {
     const Arguments<4> of({"jx", "jz", "dx", "dz"}, impulses, n);
     const Geometry at = geometry(scene.axes(), scene.theta);

@@ -7,8 +7,8 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// Returns x_dot, z_dot, omega just after the collision of a touching body. The arguments are theta,
-// x_dot, z_dot, omega, a, b, gyration2, friction, restitution, each with n elements or one.
+// Returns x_dot, z_dot, omega just after a collision with the ground. The arguments, in the order
+// of `row`, each have n elements or one.
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, Restitution law) {
     const auto row = [&](double theta, double x_dot, double z_dot, double omega, double a, double b,
                          double gyration2, double friction, double restitution) {
@@ -21,7 +21,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.z = a + b;  // above the ground at any angle, so that any velocity is valid
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
-        validate(scene.body());            // first, so that errors name gyration2
+        validate(scene.body());            // first, so that errors mention gyration2
         validate(scene, Origin::reached);  // with the widest limits: gravity is arbitrary here
         const Geometry at = geometry(scene.axes(), theta);
         const State before = state_before_impulse(scene, at);
@@ -98,8 +98,7 @@ void take(py::handle given, Value& value) {
     }
 }
 
-// Whether two tuples contain the same objects; comparing the objects one by one in Python would be
-// slower.
+// Whether two tuples contain the same objects; faster than a comparison in Python.
 bool hold_the_same(const py::tuple& x, const py::tuple& y) {
     const auto is = [](const py::handle one, const py::handle other) { return one.is(other); };
     return std::equal(x.begin(), x.end(), y.begin(), y.end(), is);

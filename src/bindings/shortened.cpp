@@ -44,7 +44,7 @@ PyObject* call(PyObject* self, PyObject* const* given, std::size_t flags, PyObje
     return answer != nullptr ? answer : by_python();
 }
 
-// The function, to which everything except short calls is passed on.
+// The function to which everything is passed on except calls that take the shortcut.
 PyObject* asked(PyObject* self) { return of(self).function; }
 
 PyObject* attribute(PyObject* self, PyObject* name) { return PyObject_GetAttr(asked(self), name); }

@@ -32,7 +32,7 @@ bool are_sample_times(const Array& t) {
 }
 
 // Sample times as an array, if they are valid and given as an array of doubles or a list of plain
-// floats; None for others, which may still be convertible.
+// floats; None for other arguments, which may still be convertible.
 py::object sample_times(const py::object& t) {
     Array times;
     if (Py_TYPE(t.ptr()) == py::detail::npy_api::get().PyArray_Type_) {
@@ -65,7 +65,7 @@ void take_samples(const Solution& solution, const Array& t, const Take& take) {
     });
 }
 
-// Returns theta, omega, x at each time.
+// Returns the times, and theta, omega and x at each.
 py::tuple rolling_samples(const Solution& solution, const Array& t) {
     FlowArrays out(t.size());
     const double* const times = t.data();
@@ -78,7 +78,7 @@ py::tuple rolling_samples(const Solution& solution, const Array& t) {
                           read_only(out.x));
 }
 
-// Returns q and q_dot, (n, 5), at each time.
+// Returns the times, and q and q_dot, (n, 5), at each.
 py::tuple coordinate_samples(const Solution& solution, const Array& t) {
     Array q = matrix(t.size(), 5);
     Array q_dot = matrix(t.size(), 5);
@@ -92,7 +92,7 @@ py::tuple coordinate_samples(const Solution& solution, const Array& t) {
     return py::make_tuple(read_only(t), read_only(q), read_only(q_dot));
 }
 
-// The values of state and force, and the mode, at each time.
+// Returns the times, and the values of state and force and the mode at each.
 py::tuple contact_samples(const Solution& solution, const Array& t) {
     constexpr std::size_t numbers = std::size(state_fields) + std::size(force_fields);
     py::tuple arrays(numbers + 2);

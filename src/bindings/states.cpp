@@ -1,4 +1,4 @@
-// Functions of a single state: geometry, constraints, forces and accelerations.
+// Functions of individual states: geometry, constraints, forces and accelerations.
 #include <map>
 
 #include "bindings/bindings.hpp"
@@ -101,7 +101,7 @@ py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const 
     });
 }
 
-// The nearest state that satisfies the constraints.
+// The nearest state that satisfies the constraints, as q and q_dot.
 py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
     CoordinateState state = single_state(q, q_dot);
     ConstrainedBody(scene).project(state);

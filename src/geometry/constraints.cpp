@@ -11,8 +11,8 @@ namespace {
 double lowest_depth(const Axes& axes, double theta) {
     const double along_a = std::sin(theta) / axes.b;
     const double along_b = std::cos(theta) / axes.a;
-    // M = R^T diag(1/a^2, 1/b^2) R has det M = 1/(a b)^2; on the line at depth y the quadratic form
-    // is at least y^2 det M/M_xx, which is 1 where the line is tangent.
+    // M = R^T diag(1/a^2, 1/b^2) R has det M = 1/(a b)^2; on the horizontal line at depth y, the
+    // quadratic form has the minimum y^2 det M/M_xx, which is 1 if the line is tangent.
     const double m_xx = along_a * along_a + along_b * along_b;
     return axes.a * axes.b * std::sqrt(m_xx);
 }
@@ -70,7 +70,8 @@ CoordinateState kinematics(const Axes& axes, double theta, double omega) {
     const Geometry at = geometry(axes, theta);
     const double psi = contact_angle(axes, theta);
     const double psi_dot = contact_angle_rate(axes, at) * omega;
-    // The radius at the rounded psi makes f3 zero to within rounding; f2 is stationary in psi.
+    // The radius at the rounded psi makes f3 zero to within rounding; f2, which is stationary in
+    // psi, hardly changes.
     const PolarRadius r = polar_radius(axes, psi);
     CoordinateState state;
     state.q << centre_path(axes, theta), at.h, theta, psi, r.value;

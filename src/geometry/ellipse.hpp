@@ -17,7 +17,7 @@ struct Axes {
     double c2() const { return (a - b) * (a + b); }  // a^2 - b^2 to full accuracy
 };
 
-// The local geometry at an angle.
+// The geometry at an angle theta.
 struct Geometry {
     double sin;
     double cos;
@@ -55,7 +55,7 @@ inline double bend_of_height(const Axes& axes, const Geometry& at) {
 }
 
 // A position given by its angle phi from the flat position: phi is theta for a >= b, otherwise
-// theta - pi/2. Half turns, which map the ellipse to itself, are removed so that cos phi >= 0.
+// theta - pi/2. Half turns, which map the ellipse to itself, are subtracted so that cos phi >= 0.
 struct FlatView {
     double long_axis;
     double short_axis;
@@ -70,8 +70,8 @@ FlatView flat_view(const Axes& axes, double theta);
 FlatView flat_view(const Axes& axes, double sin, double cos);
 
 // under_tip is L - h, the depth of the centre below its highest position [m]; over_flat is h - S,
-// the height of the centre above its lowest position [m]. Both are computed as products, since
-// differences of heights would lose accuracy.
+// its height above its lowest position [m]. Both are products, since the differences would lose
+// accuracy.
 inline double under_tip(const FlatView& at, double h) {
     return at.c2 * square(at.cos) / (at.long_axis + h);
 }
@@ -80,8 +80,8 @@ inline double over_flat(const FlatView& at, double h) {
 }
 
 // Whether the contact lies vertically below the centre, to within 8 ulp of the height and of the
-// angle. On a slope the vertical through the centre meets the ground h tan(slope) = h incline
-// downhill of the foot of the perpendicular.
+// angle. On a slope, the vertical through the centre meets the ground a distance h tan(slope) = h
+// incline downhill of the foot of the perpendicular.
 bool is_equilibrium(const Geometry& at, double incline = 0.0);
 
 // The angle psi - theta = atan2(h', h) from the ground's normal to the contact, in (-pi/2, pi/2).
@@ -139,8 +139,8 @@ inline double within_a_turn(double angle) {
 
 inline bool is_odd(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
 
-// An angle split into quarter turns and the angle from the nearest flat position or tip. This form
-// preserves the precision of a DoubleDouble.
+// An angle as a number of quarter turns and the angle from the nearest flat position or tip. This
+// form preserves the precision of a DoubleDouble.
 struct QuarterView {
     double quarters;
     DoubleDouble rest;
@@ -166,8 +166,8 @@ inline double resolved(double angle) {
     return std::abs(angle) > largest ? within_a_turn(angle) : angle;
 }
 
-// Subtracts whole half turns from angle + carry if the angle exceeds half a turn; returns their
-// number.
+// If the angle exceeds half a turn, subtracts whole half turns from angle + carry and returns their
+// number; otherwise returns 0.
 inline double take_half_turns_off(double& angle, double& carry) {
     if (!(std::abs(angle) > pi)) return 0.0;
     const double over = std::nearbyint(angle / pi);

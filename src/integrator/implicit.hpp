@@ -13,8 +13,8 @@ namespace rolling_ellipse {
 template <int N, int Stages>
 using StageVectors = std::array<Vector<N>, Stages>;
 
-// The scale by which errors of each component are judged in a step: the sum of the magnitudes of a
-// typical state, of the point and of the stages.
+// The scale for the errors of each component in a step: the sum of the magnitudes of a typical
+// state, the point and the increments.
 template <int Stages, class System, int N = System::size>
 Vector<N> size(const System& f, const Point<N>& point, const StageVectors<N, Stages>& parts) {
     Vector<N> sum = f.typical() + point.y.cwiseAbs();
@@ -55,7 +55,7 @@ class Stagnation {
         return shrinking;
     }
 
-    // The largest of the most recent changes, each component relative to its scale.
+    // The largest of the most recent changes, relative to the scale of its component.
     double left(const Vector<N>& size) const { return largest_.cwiseQuotient(size).maxCoeff(); }
 
     // True if the most recent changes are negligible relative to the first ones or to the scale.
@@ -96,9 +96,9 @@ struct PartialStep {
     }
 };
 
-// Gauss-Legendre collocation of order 2 s: symplectic and symmetric; its rounding error grows like
-// a random walk. It uses fixed-point iteration to the last bit, increments L_j = h b_j f(Y_j) with
-// h b_j that sum to h, and compensated summation, as in
+// Gauss-Legendre collocation with S stages, of order 2 S: symplectic and symmetric, with a rounding
+// error that grows like a random walk. It uses fixed-point iteration to the last bit, increments
+// L_j = h b_j f(Y_j) with h b_j that sum to h, and compensated summation, as in
 //     E. Hairer, R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231,
 //     M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861.
 template <int S, class System>
@@ -151,7 +151,7 @@ class Gauss {
   private:
     using Coefficients = GaussCoefficients<S>;
 
-    // The weights h b_j of a step of size h; the first and last are chosen so that their sum is h.
+    // The weights h b_j of a step; the first and last are adjusted so that all of them sum to h.
     static std::array<double, S> weights(double h) {
         std::array<double, S> hb;
         double rest = h;

@@ -123,7 +123,7 @@ class ExplicitMethod {
             dense.terms[3 + term] = h * weighted_sum<Tableau::dense, term, all_stages>(k_);
         });
         for (Vector<N>& term : dense.terms) {
-            // Omits terms of the interpolant that are out of range because a stage overflows.
+            // Omits terms that are out of range because a stage overflowed.
             if (!in_range<N>(term)) term.setZero();
         }
         return dense;

@@ -7,7 +7,7 @@
 //         Vector<size> mass() const;                                      // for Radau
 //         Vector<size> typical() const;  // magnitudes of a typical state, for implicit methods
 //     };
-// A step allocates no memory; a step that fails returns a status.
+// A step allocates no memory and reports failure by its return value.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,7 +48,7 @@ void add(Point<N>& point, const Vector<N>& increment) {
 }
 
 // Dense output of an explicit method (E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
-// Differential Equations I, II.6): the cubic Hermite polynomial with terms of higher order,
+// Differential Equations I, II.6): the cubic Hermite polynomial plus terms of higher order,
 //     y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))),   0 <= s <= 1.
 template <int N, int Terms>
 struct DenseOutput {
@@ -66,7 +66,7 @@ struct DenseOutput {
     }
 };
 
-// Number of steps between two calls of the checkpoint. So many steps take 10 us to 4 ms.
+// Number of steps between two calls of the checkpoint; they take 10 us to 4 ms.
 inline constexpr std::size_t steps_between_checks = 64;
 
 struct Tolerance {

@@ -14,7 +14,7 @@ namespace rolling_ellipse {
 
 struct MultiplierSolution {
     Coordinates q_ddot;
-    Eigen::Vector4d multipliers;  // units N, N, N, N m; the first two are F and N
+    Eigen::Vector4d multipliers;  // [N, N, N, N m]; the first two are the forces F and N
 };
 
 // The coordinates of a body in any mode: psi and r are those of its lowest point.
@@ -39,7 +39,7 @@ class ConstrainedBody {
     const Axes& axes() const { return axes_; }
     double length() const { return length_; }
 
-    // Accelerations and multipliers with A q_ddot = demand, from one factorisation.
+    // Accelerations and multipliers that satisfy A q_ddot = demand.
     MultiplierSolution solve(const Coordinates& q, const Eigen::Vector4d& demand) const;
 
     // Accelerations and multipliers that preserve the constraints.

@@ -15,7 +15,7 @@ struct Bracket {
     double high;
 };
 
-// Bisects between low < high, where the predicate is false at `low` and true at `high`.
+// Bisects the interval from low to high, where the predicate is false at `low` and true at `high`.
 template <class Predicate>
 Bracket bisect(double low, double high, const Predicate& is_high) {
     for (;;) {
@@ -25,17 +25,17 @@ Bracket bisect(double low, double high, const Predicate& is_high) {
     }
 }
 
-// Finds a sign change of a function between two points with the secants of the Illinois method (M.
-// Dowell, P. Jarratt, BIT 11 (1971) 168). Every fourth step, and every step after forty secants,
-// is a bisection. A secant that lands close to an end is moved a few doubles inwards, so that the
-// other end approaches, too. The caller evaluates the function:
+// Finds a sign change of a function between two points by a secant method, the Illinois method (M.
+// Dowell, P. Jarratt, BIT 11 (1971) 168). Every fourth step, and every step after the first forty,
+// is a bisection. A point within a few doubles of an end is moved inwards, so that the other end
+// approaches, too. The caller evaluates the function:
 //     while (const auto x = bracket.next()) bracket.take(*x, f(*x));
 class RootBracket {
   public:
     RootBracket(double low, double high, double f_low, double f_high)
         : ends_{low, high}, f_low_(f_low), f_high_(f_high), rises_(f_high > 0) {}
 
-    // The next point at which to evaluate; empty if the ends are neighbouring doubles.
+    // The next point at which to evaluate the function; empty if the ends are neighbouring doubles.
     std::optional<double> next() {
         constexpr int most_secants = 40;
         const auto [low, high] = ends_;
@@ -75,8 +75,8 @@ class RootBracket {
     int moved_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none so far
 };
 
-// A guess of a root and of the slope at the root. bisect_root first evaluates the guess, then the
-// point two Newton steps away, which is usually on the other side of the root.
+// A guess of a root and of the slope there. bisect_root evaluates the function at the guess, then
+// after twice the Newton step from it, which is usually on the other side of the root.
 struct RootGuess {
     double root;
     double slope;
@@ -96,9 +96,9 @@ Bracket bisect_root(double low, double high, const Function& f,
     return bracket.ends();
 }
 
-// Finds the single extremum in an interval by golden-section search, to 1e-8 of the interval;
-// within that distance rounding hides the changes of the function. The comparison takes two points,
-// the lower one first, and is true if the extremum lies below the upper one.
+// Finds the single extremum in an interval by golden-section search, to within 1e-8 of the width of
+// the interval. Closer to the extremum, rounding hides the changes of the function. The comparison
+// takes two points, the lower one first, and is true if the extremum lies below the upper one.
 template <class Comparison>
 double golden_section(double low, double high, const Comparison& is_below_upper) {
     constexpr double golden = 0.6180339887498949;

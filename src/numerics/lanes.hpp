@@ -1,8 +1,8 @@
-// Several doubles side by side (a Pack), and functions that give the same bits for a double and for
-// a Pack: templates over the number type T. Some files that include this header are compiled for
-// every vector level (rolling/level/kernel_code.hpp), the other files only once. All names are in
-// an anonymous namespace, so that the linker cannot use a function compiled for wide vectors in
-// code for machines without these vectors.
+// Several doubles side by side (a Pack), and function templates that give the same bits for T =
+// double as for T = Pack. Some files that include this header are compiled for every vector level
+// (rolling/level/kernel_code.hpp), the other files only once. All names are in an anonymous
+// namespace, so that the linker cannot use a function compiled for wide vectors in code for
+// machines without these vectors.
 //
 // Every function that takes or returns a Pack is inlined, because the wide version of a function
 // (numerics/wide.hpp) would pass a Pack in different registers.
@@ -98,7 +98,7 @@ inline constexpr int lanes_of = sizeof(T) / sizeof(double);
 [[gnu::always_inline]] inline bool negated(bool mask) { return !mask; }
 [[gnu::always_inline]] inline Mask<Pack> negated(Mask<Pack> mask) { return ~mask; }
 
-// The largest of the lanes.
+// The largest value in any lane.
 template <class T>
 [[gnu::always_inline]] inline double largest(T x) {
     double found = lane_of(x, 0);
@@ -180,7 +180,7 @@ template <class T>
     return number<T>((bits<T>(n + to_integer) << 52) + (1023ULL << 52));
 }
 
-// A polynomial by Horner's scheme; coefficients in descending powers.
+// A polynomial by Horner's scheme, with the coefficients in descending powers.
 template <class T, class... Doubles>
 [[gnu::always_inline]] inline T horner(T x, double highest, Doubles... lower) {
     T sum = filled<T>(highest);
@@ -191,8 +191,8 @@ template <class T, class... Doubles>
 constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // ln 2 to 42 bits, so that n ln2_high is exact
 constexpr double ln2_low = 0x1.ef35793c76730p-45;
 
-// sinh v and e^-v for 0 <= v < 700, from sinh r and cosh r with v = n ln 2 + r by the addition
-// theorems, so that a small sinh stays accurate.
+// sinh v and e^-v for 0 <= v < 700. The addition theorems give them from sinh r and cosh r with v =
+// n ln 2 + r, so that a small sinh stays accurate.
 template <class T>
 struct Hyperbolic {
     T sinh;
@@ -220,8 +220,8 @@ template <class T>
     return {sinh_n + (sinh_n * even + cosh_n * sinh_r), 2 * down * (1 + (even - sinh_r))};
 }
 
-// The natural logarithm of a normal positive number 2^n m with m between sqrt(1/2) and sqrt(2), by
-// the series of 2 artanh((m - 1)/(m + 1)).
+// The natural logarithm of a normal positive number 2^n m with m between sqrt(1/2) and sqrt(2),
+// from the series of 2 artanh((m - 1)/(m + 1)).
 template <class T>
 [[gnu::always_inline]] inline T log(T x) {
     constexpr unsigned long long root_half = 0x3fe6a09e667f3bcdULL;

@@ -56,7 +56,7 @@ class LU {
     }
 
   private:
-    // Subtracts a multiple of column k of the lower factor from a column, below row k.
+    // Subtracts `times` times column k of the lower factor from a column, below row k.
     void subtract(const Number times, int k, Number* column) const {
         for (int i = k + 1; i < N; ++i) column[i] -= factors_(i, k) * times;
     }

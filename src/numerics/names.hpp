@@ -1,5 +1,4 @@
-// The names of the values of an enum, in order; the values count up from 0. Each enum specializes
-// `names`.
+// The names of the values of an enum, which count up from 0. Each enum specializes `names`.
 #pragma once
 
 #include <array>

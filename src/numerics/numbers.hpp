@@ -26,7 +26,7 @@ inline constexpr double largest_number = 1e50;
 // 1.5 * 2^52; adding this constant rounds a number to a whole number.
 inline constexpr double to_integer = 6755399441055744.0;
 
-// Result of a comparison: bool for doubles, one truth value per lane for several lanes.
+// Result of a comparison: a bool for doubles, or one truth value for each lane.
 template <class T>
 using Mask = decltype(T{} < T{});
 
@@ -134,8 +134,8 @@ struct SineCosine {
 };
 
 // Sine and cosine for |angle| <= pi/4, without calls or branches; the bits are the same with every
-// C library. The omitted terms of the series amount to 5e-17 of the sine and 2e-18 of the cosine.
-// Pairs of terms are independent of each other.
+// C library. The omitted terms of the series are at most 5e-17 for the sine and 2e-18 for the
+// cosine.
 inline SineCosine sine_cosine_of_rest(double angle) {
     const double z = angle * angle;
     const double z2 = z * z;

@@ -1,5 +1,5 @@
-// Functions on the interval -1 ... 1 (a part) as polynomials through its Gauss nodes, in several
-// lanes.
+// Functions on a part, the interval -1 ... 1, as polynomials through their values at the Gauss
+// nodes; the loops use several lanes.
 #pragma once
 
 #include <array>

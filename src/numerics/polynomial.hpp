@@ -42,13 +42,12 @@ enum class Sign { positive, negative, undecided };
 //   * The law of rolling, of degree 10, has the longest chain, 37, counted along the lines of
 //     force_polynomials and grip_polynomial. A product of polynomials of degrees M and N with m and
 //     n roundings has m + n + 1 + min(M, N).
-//   * In a series of degree 24 (slides), the powers of its reach contribute 25, in addition to the
-//     roundings of its terms.
+//   * In a series of degree 24 (slides), the factors reach^k add 25 to those of its coefficients.
 //   * The Bernstein form adds 3N + 1: 2N in an entry of the matrix, a product and N sums. That is
 //     31 for degree 10, 73 for degree 24.
 //   * Subdivision at a point other than the middle adds 3N: 30 for degree 10, the only such case.
-// In total, the law has 98, and the series 98 plus those of its terms. Each subdivision in the
-// middle, of which there are up to 48, adds N sums; `divided` adds their roundings to the
+// In total, the law has 98, and the series has 98 plus those of its coefficients. Each subdivision
+// in the middle, of which there are up to 48, adds N sums; `divided` adds their roundings to the
 // magnitude. The parameters are rounded, too: the sign is proved for a body and a start that differ
 // from the exact ones by no more than this rounding.
 constexpr double most_roundings = 128;
@@ -138,7 +137,6 @@ Bernstein<N> bernstein(const Polynomial<N>& p) {
         }
         return rows;
     }();
-    // Values and magnitudes are computed side by side.
     std::array<Pair, N + 1> powers;
     for (int j = 0; j <= N; ++j) {
         powers[j] = Pair{p.coefficients[j].value, p.coefficients[j].magnitude};
@@ -213,7 +211,7 @@ int sign_changes(const Bernstein<N>& p) {
     return changes;
 }
 
-// The root of p, which changes its sign once in (0, 1).
+// The root of a polynomial that changes its sign once in (0, 1).
 template <int N>
 double single_root(const Bernstein<N>& p) {
     const auto [low, high] = bisect_root(0.0, 1.0, [&](double x) { return value(p, x); });
@@ -258,9 +256,9 @@ Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
     return right == Sign::positive ? left : right;
 }
 
-// The first point in [0, 1] after which p is provably negative; empty if p is not provably negative
-// anywhere. Values within rounding of zero do not count as negative; if p has only such values
-// before that point, the result is 0.
+// The first point in [0, 1] just after which p is provably negative; empty if p is not provably
+// negative anywhere. Values within rounding of zero do not count as negative; if p has only such
+// values before that point, the result is 0.
 template <int N>
 std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
     int changes = 0;

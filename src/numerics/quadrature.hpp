@@ -10,7 +10,7 @@
 
 namespace rolling_ellipse {
 
-// The smallest tabulated rule with at least n nodes; the largest rule if n exceeds the table.
+// The smallest tabulated rule with at least n nodes; the largest rule if none has that many.
 inline const GaussRule& gauss_rule(int n) {
     for (const GaussRule& rule : gauss_rules) {
         if (rule.size >= n) return rule;
@@ -18,7 +18,7 @@ inline const GaussRule& gauss_rule(int n) {
     return gauss_rules[std::size(gauss_rules) - 1];
 }
 
-// A node of a rule on -1 .. 1.
+// A node of a rule on -1 ... 1.
 struct Node {
     double place;
     double weight;
@@ -30,19 +30,19 @@ inline Node node_of(const GaussRule& rule, int i) {
     return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
 }
 
-// Number of nodes of the rule on a part; a function on a part is given by its values at these
-// nodes.
+// Number of Gauss nodes on a part, which is an interval mapped to -1 ... 1. A PartArray contains
+// the values of a function at these nodes.
 inline constexpr int part_order = 20;
 using PartArray = std::array<double, part_order>;
 
-// A polynomial on a part, -1 ... 1, and its integral from -1, in powers of the position in the
-// part; the highest coefficient of the value is 0.
+// The coefficients of a polynomial on a part and of its integral from -1, in ascending powers of
+// the position. The last coefficient of `value` is 0.
 struct PartPolynomial {
     std::array<double, part_order + 1> value;
     std::array<double, part_order + 1> integral;
 };
 
-// The integral of f from v0 to v1, summed in double-double so that summing adds no rounding error.
+// The integral of f from v0 to v1, summed in double-double, which adds no rounding error.
 template <class Function>
 DoubleDouble integrate(const GaussRule& rule, double v0, double v1, const Function& f) {
     const double middle = 0.5 * (v0 + v1);

@@ -17,7 +17,7 @@ namespace rolling_ellipse {
 inline constexpr int series_order = 16;
 using Series = std::array<double, series_order + 1>;
 
-// The sum of terms first .. last of coefficient k of a product, computed as two independent sums.
+// Terms first .. last of the sum for coefficient k of a product, added as two independent sums.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto terms(const Coefficients& p, const Coefficients& q, int k,
                                          int first, int last) {
@@ -39,15 +39,15 @@ template <class Coefficients>
     return terms(p, q, k, 0, k);
 }
 
-// Coefficient k of the square of a series, omitting the first and last `from` terms of the sum.
+// Coefficient k of the square of a series, without the first and last `from` terms of its sum.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto self_product(const Coefficients& p, int k, int from = 0) {
     const auto pairs = 2 * terms(p, p, k, from, (k + 1) / 2 - 1);
     return k % 2 == 0 && k / 2 >= from ? pairs + p[k / 2] * p[k / 2] : pairs;
 }
 
-// The value of a series at z, or its values in several lanes. Two independent sums halve the length
-// of the chain of operations.
+// The value of a series at z, a double or several lanes. Two independent sums halve the length of
+// the chain of operations.
 template <std::size_t Size, class Number>
 [[gnu::always_inline]] inline Number value(const std::array<double, Size>& series, Number z) {
     static_assert(Size % 2 == 1 && Size > 2);
@@ -68,12 +68,12 @@ double derivative(const std::array<double, Size>& series, double z) {
     return sum;
 }
 
-// Four numbers in one register where the processor has one that wide (numerics/wide.hpp). The
-// results have the same bits as those for single doubles.
+// Four doubles, in one register if the processor has registers of this size (numerics/wide.hpp).
+// The results have the same bits as those for single doubles.
 using Quad = double __attribute__((vector_size(4 * sizeof(double))));
 
-// Order of the power series that cover an arc in a few pieces. A higher order gives a larger radius
-// at a nearly proportional cost, but each piece also has a fixed cost.
+// Order of the power series that follow a motion piece by piece. A higher order makes a piece
+// longer and costlier by nearly the same factor, but each piece also has a fixed cost.
 inline constexpr int long_order = 24;
 using LongSeries = std::array<double, long_order + 1>;
 
@@ -87,11 +87,11 @@ template <class Coefficients>
     return Number(terms(p, q, k, 2, k - 2) + (p[1] * q[k - 1] + p[k - 1] * q[1]));
 }
 
-// Factors of several products, one product in each lane, computed side by side and coefficient by
+// Factors of four products, one in each lane, which are computed side by side, coefficient by
 // coefficient.
 using Factors = std::array<Quad, long_order + 1>;
 
-// Coefficient k of the product in a lane, from its inner terms and coefficient k of both factors.
+// Coefficient k of the product in one lane, from its inner terms and coefficient k of both factors.
 struct ProductAt {
     int k;
 
@@ -125,9 +125,9 @@ template <class Function>
 // The radius at which the last terms of each series are at most a twentieth of an ulp of the
 // largest of its first three terms; the omitted terms are smaller still. Half an ulp would be too
 // much, since the error may have the same sign step after step. The last four terms are used, since
-// three of them may vanish by symmetry; each is scaled to the end of the series as if successive
-// terms fell by a factor of five. Each step of the fixed-point iteration divides the error of
-// log(radius) by eight.
+// three of them may vanish by symmetry; the earlier ones are reduced as if successive terms fell by
+// a factor of five. Each step of the fixed-point iteration divides the error of log(radius) by
+// eight.
 inline double reach(std::initializer_list<const LongSeries*> all) {
     constexpr double rest = 1e-17;
     constexpr double fall = 0.2;

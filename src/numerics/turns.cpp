@@ -12,8 +12,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// Degree of the fitted polynomials. Dense output has a degree of at most 7; other quantities need
-// more halvings.
+// Degree of the fitted polynomials. Dense output, of degree 7 at most, needs no halving of its
+// intervals; other quantities may need several.
 constexpr int degree = 8;
 
 // Chebyshev nodes on [0, 1], to four digits, and between them, at index `compared`, one more point,
@@ -22,7 +22,7 @@ constexpr std::array<double, degree + 2> places = {0.0076, 0.067, 0.1786, 0.329,
                                                    0.5,    0.671, 0.8214, 0.933, 0.9924};
 constexpr int compared = 4;
 
-// The polynomials binomial(degree, i) s^i (1-s)^(degree-i).
+// The values at s of the Bernstein polynomials binomial(degree, i) s^i (1-s)^(degree-i).
 Eigen::Matrix<double, degree + 1, 1> bernstein_basis(double s) {
     constexpr auto binomial = binomials<degree>();
     Eigen::Matrix<double, degree + 1, 1> row;
@@ -55,8 +55,8 @@ struct Part {
     int depth = 0;
 };
 
-// Adds the turning points in the given intervals; false if some polynomial does not fit the
-// quantity.
+// Adds the turning points in the given intervals, and the middle of each interval that is halved.
+// Returns false if some polynomial does not fit the quantity.
 bool add_turns_in(const Measure& measure, double size, std::vector<Part> parts,
                   std::vector<double>& times) {
     constexpr double roundings = 1000;  // allowed rounding errors; the inverse basis has norm 300

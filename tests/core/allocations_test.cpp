@@ -1,5 +1,5 @@
 // Steps and samples allocate no memory, apart from the growth of the vectors that store the steps.
-// To show this, the test counts allocations for some number of them and for twice as many.
+// The test counts allocations for some number of them and for twice as many.
 //
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 

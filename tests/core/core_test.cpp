@@ -52,7 +52,8 @@ void bisection_by_secants_ends_at_the_same_neighbours() {
     CHECK(f(falling.low) < 0 && f(falling.high) >= 0);
 }
 
-// Elimination permutes the rows; all multipliers are 0 or 1/2, so that no operation rounds.
+// The order of the rows makes pivoting necessary. All multipliers are 0 or 1/2, so that no
+// operation rounds.
 template <class Number>
 void equations_are_solved_whatever_their_order(Number unit) {
     Eigen::Matrix<Number, 3, 3> rows;
@@ -71,8 +72,8 @@ void the_first_place_where_a_polynomial_is_negative() {
     CHECK(!first_negative(bernstein(dips + polynomial(0.0625))));
     const auto grazes = first_negative(bernstein(dips + polynomial(0.0625 - 1e-12)));
     CHECK(grazes && std::abs(*grazes - (0.5 - 1e-6)) < 1e-9);
-    // A polynomial that starts at zero and rises is not negative there; one that starts below zero
-    // is.
+    // A polynomial that starts at zero and rises is not negative at its start; one that starts
+    // below zero is.
     const auto later = first_negative(bernstein(polynomial(0.0, 1.0, -2.0)));
     CHECK(later && std::abs(*later - 0.5) <= 2 * epsilon);
     CHECK(first_negative(bernstein(polynomial(-1.0, 3.0))) == 0.0);
@@ -108,7 +109,7 @@ void every_segment_knows_every_kind_of_sample() {
         using namespace coordinate;
         const State& state = states[i].state;
         const auto& [q, q_dot] = coordinates[i];
-        // Samples of rolling use a different formula.
+        // FlowSamples of rolling use a different formula.
         const auto close = [](double one, double other) {
             return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
         };

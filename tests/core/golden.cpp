@@ -1,10 +1,10 @@
-// Prints the bits of motions of every model and of the results of every proof.
+// Prints the exact values of motions of every model and of the results of every proof.
 // tests/core/test_core.py and tools/same_bits.py compare the output of several builds.
 //
 //     golden > tests/core/golden.txt
 //
-// Each line is a record: its kind, words, then numbers as hexadecimal floats. The arguments of a
-// motion precede its results.
+// Each line is a record: its kind, further words, and numbers as hexadecimal floats. The arguments
+// of a motion precede its results.
 
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,7 @@
-"""Tests with the C++ programs from a second build of the core, without optimisation.
+"""Tests of a second build of the core, without optimisation, and of its test programs.
 
 This build must agree with the installed extension bit for bit in the motions of every model and the
-results of every proof (golden.cpp). They must also equal the committed records (golden.txt) if the
+results of every proof (golden.cpp). These must also equal the committed records (golden.txt) if the
 C library is the same. Another version of the library, or the same one on a processor without fused
 multiply-add, rounds sin, cos, exp and log differently; then the differences must stay within the
 bound of oracles/golden.py.
@@ -35,7 +35,7 @@ OTHERS = ("body", "rolled", "thresholds", "classify")
 
 
 def found(name: str) -> str | None:
-    """Path of a program: next to the interpreter (from the test extra), otherwise on the PATH."""
+    """Path of a program next to the interpreter (from the test extra), otherwise on the PATH."""
     scripts = sysconfig.get_path("scripts")
     return shutil.which(name, path=os.pathsep.join((scripts, os.environ.get("PATH", ""))))
 
@@ -124,14 +124,14 @@ def test_motions_computed_through_python_stay_within_the_bound(name: str) -> Non
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-def test_motions_of_the_extension_equal_the_second_build_bit_for_bit(
+def test_motions_computed_by_the_extension_equal_the_second_build_bit_for_bit(
     name: str, second: Build
 ) -> None:
     motion = [each for each in blocks(second[1], "motion")[name] if each.kind not in OTHERS]
     compare(motion[2:], list(motion_through_python(motion)), 0.0)
 
 
-def test_bodies_of_the_extension_equal_the_second_build_bit_for_bit(second: Build) -> None:
+def test_bodies_rolled_by_the_extension_equal_the_second_build_bit_for_bit(second: Build) -> None:
     bodies = [each for each in second[1] if each.kind in ("body", "rolled")]
     compare(bodies, bodies_through_python(bodies), 0.0)
 

@@ -1,6 +1,6 @@
-// Several threads that run the core at the same time give the same bits as one thread. (Tests from
-// Python show less, since Python's global lock lets only one thread at a time run much of the
-// package.) ThreadSanitizer (preset tsan) shows that they share no mutable state.
+// Several threads that run the core at the same time give the same bits as one thread. Tests from
+// Python show less, since Python's global lock serialises much of the package. ThreadSanitizer
+// (preset tsan) shows that the threads share no mutable state.
 //
 //     cmake --preset tsan && cmake --build --preset tsan && ctest --preset tsan
 
@@ -21,8 +21,8 @@ using namespace rolling_ellipse;
 namespace {
 
 constexpr int threads = 8;
-// Jobs that each thread runs, every fifth one of the list. Together, the 8 threads run every job,
-// and most jobs at least twice.
+// Number of jobs that each thread runs, every fifth one of the list. Together, the 8 threads run
+// every job, and most jobs at least twice.
 constexpr int rounds = 8;
 
 using Numbers = std::vector<double>;

@@ -73,8 +73,8 @@ RollingFlow flow_of(const RollingStart& from, double x) {
 void set_quarter(RollingFlow& flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
     set_quarter(flow.phase);
-    // In a map with a tail, the steps end short of the tip, by 1e-9 of the path of the quarter.
-    // This path is therefore recomputed.
+    // In a map with a tail, the steps omit 1e-9 of the path of the quarter, which is therefore
+    // recomputed.
     if (flow.phase.map.has_tail) {
         flow.phase.quarter_path = path_from_flat(flow.from.view.lying(), 1.0, 0.0);
     }
@@ -136,7 +136,6 @@ DoubleDouble time_since_flat(const RollingFlow& flow, const PhasePoint<double>& 
 }
 
 double time_of_passing(const RollingFlow& flow, double theta, double heading) {
-    // The angle by which the ellipse turns from the start to theta.
     const double turn = theta - flow.from.theta;
     const FlatView& at = flow.from.view;
     double sin = at.sin * std::cos(turn) + at.cos * std::sin(turn);

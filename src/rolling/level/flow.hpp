@@ -1,27 +1,28 @@
 // Exact rolling on level ground: the start of a motion and its state at any time. No time steps are
 // taken, so a state costs the same however far it is from the start.
 //
-// A motion is described by its phase. The templates below store the integrand of the time, the
-// coordinate of integration and the integrals, for one body (T = double) or for one body in each
-// lane of a Pack.
+// A motion is described by its phase. The templates below are for one body (T = double) or for one
+// body in each lane of a Pack.
 //
 // With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
 // the energy height H = E/(m g) and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral of
-// physics (27) becomes physics (29),
+// physics (27) takes the form of physics (29),
 //     dt/dphase = scale sqrt(D (H + h)) / sqrt(cos^2 phase + kappa^2 sin^2 phase),
 //     sin phi   = amplitude sin phase,
 // for rotation (phase = phi) as well as libration (phase = u, with sin phi = sin phi_max sin u):
 //     rotation:  amplitude 1, scale^2 = 1/(2 g (H^2 - S^2)),   kappa^2 = (H^2 - L^2)/(H^2 - S^2)
 //     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
-// No term loses digits to cancellation, except H - L itself.
+// Of all these terms, only H - L loses digits to cancellation.
 //
 // In the coordinate y no integrand has a peak, physics (61): neither at the flat position of a thin
 // body nor at the tip in a motion near the separatrix.
 //     tan phase = g sc(w, k),   k' = kappa g,   w = theta_3(q)^2 y,   q = e^(-2 Y),
-// where sc = sn/cn is a Jacobi elliptic function with the complementary modulus k'. The flat
-// position is at y = 0, the tip or turning point at y = Y, and everything is symmetric about both.
-// The integrand of the time is singular where tan phase is imaginary, between g and 1/kappa: on the
-// line Im y = pi/2 (DLMF 22.4). Near either end, y is the coordinate v of physics (31).
+// where g is the grade of the map, not gravity, and sc = sn/cn is a Jacobi elliptic function with
+// the complementary modulus k'. The flat position is at y = 0, the tip or turning point at y = Y,
+// and the integrands are symmetric about both. The integrand of the time is singular where tan
+// phase is imaginary, with a magnitude between g and 1/kappa. These points lie on the line Im y =
+// pi/2 (DLMF 22.4). Near the flat position, y is the coordinate v of physics (31), and so is Y - y
+// near the tip.
 #pragma once
 
 #include <cmath>
@@ -33,8 +34,8 @@
 namespace rolling_ellipse {
 
 // The energy as a height H = E/(m g) [m], and its excess over the height of the centre on the tip
-// (H - L, negative in libration) and in the flat position (H - S), computed without cancellation:
-// physics (26).
+// (H - L, negative in libration) and in the flat position (H - S), computed without subtracting
+// heights: physics (26).
 struct EnergyHeight {
     double total;
     double over_tip;
@@ -85,8 +86,8 @@ struct PhaseMap {
     T b[3];
 };
 
-// The point y = quarters Y + offset. `quarters` is the whole number nearest to y/Y, unless a
-// function states otherwise.
+// The point y = quarters Y + offset. `quarters` is the integer nearest to y/Y, unless a function
+// states otherwise.
 template <class T>
 struct PhasePlace {
     T quarters;
@@ -109,8 +110,7 @@ struct PhaseIncrement {
     T path;
 };
 
-// Number of doubles in the widest Pack. The rates of one body are computed at several points side
-// by side, one such Pack at a time.
+// Number of doubles in the widest Pack; arrays of points are padded to a multiple of it.
 inline constexpr int widest_pack = 8;
 inline constexpr int most_places = 48;  // room for the nodes of a panel and its end
 
@@ -121,7 +121,7 @@ struct alignas(64) PhaseRates {
     T path[most_places];
 };
 
-// The time as a function of the phase.
+// The time of a motion as a function of its phase.
 template <class T>
 struct PhaseTime {
     PhaseIntegrand<T> integrand;
@@ -136,7 +136,7 @@ struct PhaseTime {
 };
 
 // The constants of the power series in time (rolling/level/motion.hpp). The unit of length is the
-// long semi-axis; the unit of time is chosen for each table or move.
+// long semi-axis; the unit of time is chosen for each table or short move.
 struct SeriesConstants {
     double short_axis2;
     double c2;
@@ -177,8 +177,8 @@ struct RollingFlow : PhaseMotion<double> {
 
 RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);
 
-// Whether one power series about the start may suffice for a move of duration t, judged by the
-// rates of rotation and of rocking about the flat position.
+// Whether one power series about the start may suffice for a move of duration t, estimated from the
+// angular velocity and the rate of rocking about the flat position.
 inline bool may_be_short(const RollingStart& from, double t) {
     const double rate = std::sqrt(from.body.gravity / from.view.short_axis);
     return std::abs(t) * (std::abs(from.omega) + rate) < 0.05;

@@ -16,13 +16,13 @@ constexpr std::size_t most_bodies = 512;  // bodies per kernel call
 constexpr int most_keys = 144;
 constexpr int no_key = -1;
 
-// The key by which bodies are sorted, so that bodies side by side have similar numbers of steps in
-// a quarter; `no_key` for a body that the kernel cannot compute.
+// The key by which bodies are sorted, so that bodies in the same vector have similar numbers of
+// steps in a quarter; `no_key` for a body that the kernel cannot compute.
 int key_of(const RollingStart& start, double t) {
     const bool is_finite = std::abs(t) <= std::numeric_limits<double>::max();
     if (start.rests || start.view.c2 == 0 || t == 0 || !is_finite) return no_key;
-    // For a short move, the kernel would subtract two nearly equal times; only a power series is
-    // accurate.
+    // For a short move, only a power series is accurate: the kernel would subtract nearly equal
+    // times.
     if (may_be_short(start, t)) return no_key;
     const PhaseIntegrand<double> integrand = phase_integrand(phase_start(start));
     const double grade2 = integrand.d0 / (integrand.d1 * integrand.amplitude2 + integrand.d0);
@@ -76,8 +76,8 @@ void sample(const Kernel& kernel, const RollingStart* starts, const double* time
                 ++ends[keys[k]];
             }
         }
-        // Counting sort: `ends` first contains the start of each key's range, which then advances
-        // to its end.
+        // Counting sort: each entry of `ends` is at first the start of its key's range, and later
+        // its end.
         int sorted = 0;
         for (int& end : ends) sorted += std::exchange(end, sorted);
         std::array<std::uint32_t, most_bodies> places;

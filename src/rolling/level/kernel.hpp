@@ -31,7 +31,7 @@ struct TablePlace {
     double angle;     // angle from this flat position or tip
     double omega;
     double time, path;  // time and path from the previous point
-    double radius;      // half-width of the interval of the series, in its variable
+    double radius;      // half-width of the interval of the series, in its unit of time
     double holds;       // 1 if the series has full double precision within its radius, else 0
 };
 
@@ -62,7 +62,7 @@ struct FlowReader {
     double quarters_per_half_turn;
     // Quarter turns from the flat position to the flat position or tip nearest the start.
     double quarters;
-    DoubleDouble angle;  // initial theta minus the initial angle from the position `quarters`
+    DoubleDouble angle;  // theta at the position `quarters`
     double path;         // path from the position `quarters` to the start
     double quarter_path;
     double theta;
@@ -71,7 +71,7 @@ struct FlowReader {
     TableSeries start;    // series about t = 0, where its angle and path are 0
 };
 
-// Arrays for the samples at many times.
+// Arrays for the samples of many times.
 struct FlowColumns {
     double* theta;
     double* omega;
@@ -90,7 +90,7 @@ inline void store(const FlowSample& sample, const FlowColumns& columns, std::siz
 struct Kernel {
     const char* name;  // name of the vector level
     // The rates of one motion at y = quarters Y + offset, |quarters| <= 1. The arrays are padded to
-    // a whole number of packs.
+    // a whole number of Packs.
     void (*rates)(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
                   double quarters, const double* offsets, int count, PhaseRates<double>& found);
     // The states of bodies, each at its own time: starts[p], times[p] and samples[p] for every p in
@@ -119,18 +119,17 @@ Kernel kernel_avx512();
 // The kernels that this processor can run, fastest last. The first computes bodies one by one.
 const std::vector<Kernel>& kernels();
 
-// The fastest kernel of this processor.
+// The fastest kernel for this processor.
 const Kernel& kernel();
 
-// The states of n bodies, each at its own time, several side by side in the lanes of a vector
-// register. Each result has the same bits as when the body is computed alone, at every vector level
-// and whatever the other bodies are. The bodies are not validated; throws std::invalid_argument for
-// a time out of range.
+// The states of n bodies, each at its own time, computed several at a time in the lanes of vectors.
+// The bits of a state depend neither on the vector level nor on the other bodies. The bodies are
+// not validated; throws std::invalid_argument for a time out of range.
 void sample(const Kernel& kernel, const RollingStart* starts, const double* times, std::size_t n,
             FlowSample* samples);
 
-// The table of series of a rotation or a libration. It cannot be copied, since the reader that is
-// passed to a kernel points to the pieces and their ends.
+// The table of series of a rotation or a libration. It cannot be copied, since its reader points to
+// its pieces and their ends.
 struct FlowTable {
     FlowTable() = default;
     FlowTable(FlowTable&&) = default;

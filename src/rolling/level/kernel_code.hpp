@@ -10,7 +10,7 @@ namespace {
 
 void rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map, double quarters,
            const double* offsets, int count, PhaseRates<double>& found) {
-    // Local copies, which the compiler need not reload after a store into `found`.
+    // The compiler need not reload local copies after a store into `found`.
     const PhaseIntegrand<double> constants = integrand;
     const PhaseMap<double> coordinate = map;
     for (int i = 0; i < count; i += lanes) {
@@ -47,8 +47,8 @@ void sample(const RollingStart* starts, const double* times, const std::uint32_t
     }
 }
 
-// The same member of several points, one point in each lane; lanes beyond either end repeat the
-// first or last point.
+// One member of several points, one point in each lane; lanes beyond either end repeat the first or
+// last point.
 inline Pack gathered(const TablePlace* places, int count, int first, double TablePlace::* number) {
     Pack found{};
     for (int lane = 0; lane < lanes; ++lane) {
@@ -60,7 +60,7 @@ inline Pack gathered(const TablePlace* places, int count, int first, double Tabl
 
 void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map, double amplitude,
             TablePlace* places, int count) {
-    // Eight nodes integrate between neighbouring points to within rounding.
+    // Between neighbouring points, eight nodes suffice for full double precision.
     constexpr GaussRule rule = gauss_rules[6];
     static_assert(rule.size == 8);
     for (int first = 0; first < count; first += lanes) {
@@ -97,9 +97,9 @@ void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map
     }
 }
 
-// Whether a series is accurate: the last term may be at most 1e-15, and the term before it 2e-14,
-// of the number to which the series is added or of the leading terms. Both are tested, since one of
-// them may be small by chance. The omitted terms are about a twentieth of the last term.
+// Whether a series is accurate: its last term may be at most 1e-15, and the term before it 2e-14,
+// times the larger of its leading terms and the number to which the series is added. Both terms are
+// tested, since one may be small by chance. The omitted terms are about a twentieth of the last.
 inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
@@ -137,7 +137,7 @@ void series(const SeriesConstants& body, double time_unit, double length_unit, T
     }
 }
 
-// Number of times that `read` processes together in each of its stages.
+// Number of times that each stage of `read` processes together.
 constexpr int block = 64;
 static_assert(block % lanes == 0);
 
@@ -258,8 +258,8 @@ void sample_series(const FlowReader& motion, int n, Block& block) {
     }
 }
 
-// Converts the values of the series in a block to samples. theta is NaN beyond the last piece;
-// returns whether that occurs.
+// Converts the values of the series in a block to samples. theta is NaN at times beyond the last
+// piece; returns whether there are any.
 bool combine(const FlowReader& motion, const double* times, int n, const Block& block,
              const FlowColumns& out) {
     bool some_lost = false;

@@ -18,8 +18,8 @@ namespace {
 // 200.
 constexpr std::size_t most_pieces = 1000;
 
-// Path length from the flat position or the tip, whichever `quarter_view` measures the angle from,
-// so that differences stay accurate near both.
+// Path from the flat position or from the tip, whichever is the origin of the angle in
+// `quarter_view`, so that differences stay accurate near both.
 double path_in_quarter(const FlatView& body, double sin, double cos) {
     const double s = std::abs(sin);
     const Axes lying = body.lying();
@@ -42,7 +42,7 @@ class TableMaker {
     // The table of the motion; empty if no spacing of the points makes all series accurate.
     std::optional<FlowTable> make() {
         // Spacings in the coordinate y, in which all singularities are at a distance of pi/2 from
-        // the real axis. At this order, the first spacing suffices for nearly all motions.
+        // the real axis. The first one suffices for nearly all motions.
         for (const double spacing : {0.122, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
@@ -57,7 +57,8 @@ class TableMaker {
     }
 
   private:
-    // Sets the points of the series, from the flat position to the end of the quarter.
+    // Sets the points about which the series are expanded, from the flat position to the end of the
+    // quarter.
     void place(double spacing) {
         constexpr double wider = 1.5;  // factor of the spacing beyond a phase of 45 degrees
         // This far beyond 45 degrees, a body on the separatrix is on the tip to within rounding.
@@ -76,13 +77,12 @@ class TableMaker {
 
     std::size_t count() const { return places_.size(); }
 
-    // half_way_back is half the time to the previous point, half_way_on half the time to the next
-    // one.
+    // Half the time to the previous and to the next point.
     double half_way_back(std::size_t i) { return 0.5 * places_[i == 0 ? 1 : i].time; }
     double half_way_on(std::size_t i) { return half_way_back(std::min(i + 1, count() - 1)); }
 
-    // Computes the motion at all points and the series about them; returns false if a series is not
-    // accurate up to the middle of the interval to the next or previous point.
+    // Computes the motion at all points and the series about them; returns false unless every
+    // series is accurate halfway to both neighbouring points.
     bool expand() {
         const int n = static_cast<int>(count());
         kernel_.states(flow_.phase.integrand, flow_.phase.map, flow_.amplitude, places_.data(), n);
@@ -143,7 +143,7 @@ class TableMaker {
     void add_start() {
         const FlatView& at_start = flow_.from.view;
         table_.reader.start_time = time_since_flat(flow_, flow_.start_phase);
-        // First guess of the radius: the length of the table's piece that contains the start.
+        // The first radius is the length of the piece that contains the start.
         const double since = std::abs(double(table_.reader.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
                                         [&](const FlowPiece& p) { return since < p.high; });
@@ -172,8 +172,7 @@ class TableMaker {
         reader.half = 1;
         while (2 * reader.half <= int(pieces.size()) - 1) reader.half *= 2;
         reader.pieces = pieces.data();
-        // The ends beyond the last piece are infinite, so that the last piece is used for all later
-        // times.
+        // The remaining ends are infinite, so that all later times use the last piece.
         table_.ends.assign(2 * reader.half - 1, infinity);
         for (std::size_t i = 0; i + 1 < pieces.size(); ++i) table_.ends[i] = pieces[i].high;
         reader.ends = table_.ends.data();
@@ -213,8 +212,8 @@ std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // No table is built for fewer times. A table costs only as much as ten single samples, but a
-    // root search, which samples a few times in each of many calls, must always get the same bits.
+    // No table is built for fewer times. A table pays from ten samples on, but a root search, with
+    // a few times in each of many calls, must always get the same bits.
     constexpr std::size_t few = 40;
     if (expected >= few) table_ = flow_table(flow);
 }

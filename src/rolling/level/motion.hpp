@@ -146,7 +146,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const PhaseTime<T>& phase = motion.phase;
     const auto rotates = phase.integrand.rotates;
     const T factor = rotates ? filled<T>(1.0) : filled<T>(2.0);
-    // Whole half turns (in a libration, whole swings) are subtracted from the time.
+    // Whole half turns of a rotation, or whole swings of a libration, are subtracted from the time.
     const TwoParts<T> turn = {factor * phase.half_turn.high, factor * phase.half_turn.low};
     const auto near = is_short(motion, t);
     const T turns = near ? T{} : nearest<T>(t / turn.high);
@@ -170,8 +170,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
         quick_two_sum(whole.high, whole.low + 2 * turns * half_pi_exact.low);
     TwoParts<T> turned = whole_turns + gain.angle;
     const auto is_endless = rotates & negated(near) & (phase.half_turn.high == infinity);
-    if (any(is_endless &
-            (now.sin_phi > now.cos_phi))) {  // one body, which approaches the tip for ever
+    if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // the body approaches the tip forever
         const PhasePoint<T>& first = motion.start_phase;
         const T rest = angle_of(now.cos_phi, now.sin_phi) + angle_of(first.sin, first.cos);
         turned = two_sum(filled<T>(half_pi_exact.high), -rest);
@@ -181,8 +180,8 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;
 
     // In a libration, a point beyond a turning point is the mirror image of a point before it. The
-    // path is integrated only from the start to that earlier point, since the way from there to the
-    // turning point and back cancels.
+    // path is integrated only up to that earlier point, since the path from there to the turning
+    // point and back is 0.
     const auto turned_back = (now.omega < 0) & negated(rotates);
     T path = gain.path;
     if (any(turned_back)) {
@@ -207,7 +206,7 @@ struct MotionSeries {
     std::array<T, order + 1> path;
 };
 
-// The constants for the series of a motion, with `time_unit` [s] as the unit of time.
+// The constants of a motion's series; `time_unit` is in seconds.
 inline SeriesConstants series_constants(const RollingStart& from,
                                         const PhaseIntegrand<double>& integrand, double time_unit) {
     const double length = from.view.long_axis;
@@ -217,9 +216,9 @@ inline SeriesConstants series_constants(const RollingStart& from,
             integrand.d1 / (area * area)};
 }
 
-// The series about the point with the given angular velocity and sine and cosine of the angle from
-// the flat position. It follows from physics (18). With this angle phi, u = h^2, q = sin^2 phi, p =
-// sin phi cos phi and D h^2 = d0 + d1 q:
+// The series about a point, given its angular velocity and the sine and cosine of its angle from
+// the flat position. They follow from physics (18). With this angle phi, u = h^2, q = sin^2 phi, p
+// = sin phi cos phi and D h^2 = d0 + d1 q:
 //     omega' u (d0 + d1 q) = -c2 p (g u h + S^2 omega^2),   q' = 2 p omega,   p' = (1 - 2 q) omega
 template <int order, class T>
 inline MotionSeries<T, order> motion_series(const SeriesConstants& body, T sin, T cos, T omega) {

@@ -18,7 +18,7 @@ constexpr double largest_offset = 300.0;
 // A quarter has a tail only if kappa is below this bound; the sharp bound is 4.1e-9.
 constexpr double largest_tail_kappa = 5e-9;
 
-// Sets A and B as polynomials in c; the omitted terms are below rounding for q <= 1/32.
+// Sets A and B as polynomials in c; for q <= 1/32, the omitted terms are below rounding.
 template <class T>
 void set_theta_functions(PhaseMap<T>& map, T q) {
     const T q2 = q * q;
@@ -57,7 +57,7 @@ void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));
     const T quarter = complement > 0 ? log<T>(4 / complement) : filled<T>(infinity);
     map.has_tail = complement < 2 * falling_at_tail * largest_grade;
-    // Rounding this length up to whole steps makes the nome slightly smaller than that of k'.
+    // Rounding this length up to whole steps makes the nome, and hence g, slightly smaller.
     const T length = any(map.has_tail) ? before_tail + log<T>(2 / largest_grade) : quarter;
     map.steps = rounded_up<T>(length * steps_per_unit);
     map.step = map.has_tail ? filled<T>(1 / steps_per_unit) : quarter / map.steps;
@@ -70,7 +70,7 @@ void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     map.tip_scale2 = kappa * kappa * sine_scale2;
 }
 
-// The coordinate y, physics (61), of a phase given by its sine and cosine, by Newton's method.
+// The coordinate y of a phase: physics (61), solved by Newton's method.
 template <class T>
 PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     constexpr double converged = 1e-8;
@@ -128,8 +128,8 @@ PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distanc
 
 // The rates at y = quarters Y + offset, |quarters| <= 1. The constants, of type C, are those of one
 // motion for all points, or those of a separate motion for each point. Since sin^2 phase = sin2/q,
-// cos^2 phase = cos2/q and h^2 = n/q, a single division suffices. Terms that do not depend on the
-// offset are computed once for all points of a loop.
+// cos^2 phase = cos2/q and h^2 = n/q, a single division suffices. The compiler moves terms that do
+// not depend on the offset out of loops over points.
 template <class C, class T>
 inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const PhaseMap<C>& map,
                                        C quarters, T offset) {
@@ -139,8 +139,8 @@ inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const
     const T tip_here = filled<T>(quarters != 0 ? one : C{});
     const T scale2_here = filled<T>(quarters != 0 ? map.tip_scale2 : map.flat_scale2);
     const T scale2_there = filled<T>(quarters != 0 ? map.flat_scale2 : map.tip_scale2);
-    // The distance to the nearest flat position or tip, which is the origin of the offset or lies
-    // one or two quarters further on.
+    // The distance to the nearest flat position or tip: the origin of the offset, or a point one or
+    // two quarters further on.
     const T from_here = abs(offset);
     const T a_turn_on = abs(from_here - half_turn);
     const T same = from_here < a_turn_on ? from_here : a_turn_on;
@@ -183,7 +183,7 @@ inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const
     return {time, angle, h * angle};
 }
 
-// The rates of bodies side by side, each at a few points.
+// The rates of several bodies, one in each lane, at `count` points each.
 inline void phase_rates(const PhaseIntegrand<Pack>& integrand, const PhaseMap<Pack>& map,
                         Pack quarters, const Pack* offsets, int count, PhaseRates<Pack>& found) {
     for (int i = 0; i < count; ++i) {

@@ -45,8 +45,8 @@ constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
     return lengths;
 }();
 
-// Gauss-Legendre rules as pairs of nodes -x and +x. A rule with fewer nodes than that of another
-// lane is padded with zeros.
+// Gauss-Legendre rules as pairs of nodes -x and +x, one rule in each lane. Shorter rules are padded
+// with zeros.
 template <class T>
 struct NodePairs {
     int count;
@@ -54,8 +54,8 @@ struct NodePairs {
     T weights[most_pairs];
 };
 
-// The smallest rules with full double precision for panels of this length, or the largest rule if
-// no rule is precise enough.
+// Sets the smallest rule with full double precision for panels of this length, or the largest rule
+// if none is precise enough.
 template <class T>
 inline void set_rules(NodePairs<T>& pairs, T length) {
     T index{};
@@ -115,16 +115,14 @@ Integral<T> integral_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T
             {rates.time[2 * count], rates.angle[2 * count], rates.path[2 * count]}};
 }
 
-// Integrates from one offset to another. None of the motions has a tail, since a motion with a tail
-// is computed alone.
+// Integrates from one offset to another. None of the motions has a tail.
 inline Integral<Pack> integral_between(const PhaseTime<Pack>& phase, Pack quarters, Pack begin,
                                        Pack end) {
     return integral_by_panels<Pack>(phase, quarters, begin, end);
 }
 
-// Integrates from one offset to another. Near the separatrix, the tip is far away in y, and the
-// body is on the tip to within rounding over a long interval of y. There only the time changes, at
-// a constant rate.
+// Integrates from one offset to another. Near the separatrix, the body is on the tip to within
+// rounding over a long interval of y, where only the time changes, at a constant rate.
 inline Integral<double> integral_between(const PhaseTime<double>& phase, double quarters,
                                          double begin, double end) {
     constexpr double long_interval = 12.0;
@@ -150,7 +148,7 @@ inline Integral<double> integral_between(const PhaseTime<double>& phase, double 
     return {{(end - begin) * slope.time, 0.0, 0.0}, slope};
 }
 
-// dt/dy and the time, from a cubic for dt/dy within a step and from its integral.
+// dt/dy, and the time since the start of a step, from a cubic for dt/dy and from its integral.
 template <class T>
 struct Cubic {
     T slope;
@@ -222,7 +220,7 @@ inline T rough_distance(const PhaseTime<T>& phase, const PhasePlace<T>& from, T 
                : place + (some ? 2 * half_turns * quarter : T{}) - y;
 }
 
-// Sets dt/dy at the steps, and integrates over the quarter by the trapezoidal rule.
+// Sets dt/dy at the steps, and the time and path of the quarter by the trapezoidal rule.
 template <class T>
 void set_quarter(PhaseTime<T>& phase) {
     const PhaseMap<T>& map = phase.map;
@@ -246,7 +244,7 @@ void set_quarter(PhaseTime<T>& phase) {
         for (int i = first; i < first + count; ++i) {
             const auto is_end = i == 0 ? n > -1 : n == i;
             const T weight = is_end ? filled<T>(0.5) : n > i ? filled<T>(1.0) : T{};
-            // dt/dy is even about the end
+            // dt/dy is even about the end of the quarter
             f[i] = n < i ? f[i - 2] : rates.time[i - first];
             add<T>(sum, weight * (rates.time[i - first] - beyond));
             path += weight * rates.path[i - first];
@@ -271,8 +269,8 @@ void set_quarter(PhaseTime<T>& phase) {
     }
 }
 
-// The distance in y covered in a short time, accurate to a few digits, given dt/dy at the start.
-// Takes one step of Halley's method, with the time from Simpson's rule.
+// The distance in y covered in a short time, accurate to a few digits, given dt/dy at the start. It
+// is one step of Halley's method, with the time from Simpson's rule.
 template <class T>
 inline T short_distance(const PhaseTime<T>& phase, const PhasePlace<T>& from, T start, T time) {
     const auto slope_at = [&](T distance) {

@@ -12,14 +12,15 @@ const Sum* first_sum(const SlopeFlow& flow) {
     return std::get_if<Sum>(&flow.stretches.front().law);
 }
 
-// The `Swing` of a body that rocks; null if the motion is followed by series, or is not known yet.
+// The `Swing` of a body that rocks; null if the motion is computed from series, or is not known
+// yet.
 const Swing* swing_of(const SlopeFlow& flow) {
     return flow.stretches.empty() ? nullptr : std::get_if<Swing>(&flow.stretches.back().law);
 }
 
 // Whether the body turns by less than about `angle` within `time` of the start, estimated from its
-// initial acceleration. Near the start, series replace sums, whose path is less accurate there, and
-// swings, which are slower.
+// initial acceleration. Near the start, a `Sum` gives a less accurate path than series, and a
+// `Swing` is slower.
 bool is_near(const SlopeFlow& flow, double time, double angle) {
     const double speed = std::abs(flow.start.omega) + 0.5 * std::abs(flow.acceleration) * time;
     return time * speed < angle;
@@ -34,8 +35,8 @@ class SlopeReader {
   public:
     explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
 
-    // Computes the point at the first of n times [s] and, in a sum or a swing, the points at those
-    // of the next times that come at no extra cost. Returns the number of points computed.
+    // Computes the point at the first of n times [s] and, in a sum or a swing, points at the next
+    // times side by side with it. Returns the number of points computed.
     std::size_t operator()(const double* times, std::size_t n, SlopePlace* places) {
         const auto time = [&](std::size_t i) { return times[i] / flow_.body.time; };
         const Swing* const swing = swing_of(flow_);
@@ -145,8 +146,7 @@ class SlopeReader {
 
 // Appends the stretch that follows a turning point; the turning point itself belongs to the series.
 // After the first turning point the motion is mirrored, and after the second it repeats. Further
-// series in place of the mirror image would not lead accurately back to the start near the rim of a
-// well.
+// series would not lead back accurately to a start near the rim of a well.
 void append_turning(SlopeFlow& flow, DoubleDouble turning) {
     const double begin = turning.low < 0 ? turning.high : std::nextafter(turning.high, infinity);
     if (flow.turning) {
@@ -180,8 +180,8 @@ void append_sum(SlopeFlow& flow, const SlopePlace& from, const Datum& here, doub
     flow.stretches.emplace_back(double(from.time), end, std::move(sum));
 }
 
-// Whether a motion that must be known up to a time may be a swing and has not yet been tried as
-// one.
+// Whether to try computing the motion as a swing, because it has not been tried and by this time
+// the body may be far from its start.
 bool may_swing(const SlopeFlow& flow, double until) {
     return !flow.by_series && !swing_of(flow) && !is_near(flow, until, near_in_swing);
 }

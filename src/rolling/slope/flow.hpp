@@ -14,7 +14,7 @@
 
 namespace rolling_ellipse {
 
-// A body at rest, or a circle, whose acceleration is constant.
+// A body at rest, or a circle, whose angular acceleration is constant.
 struct Even {};
 
 // Many half turns at once: uphill to `end`, near the top of the climb, or downhill forever, in
@@ -24,8 +24,8 @@ struct Sum {
     SlopePlace end;
 };
 
-// The motion before the first turning point, run in reverse until the body is back at the start of
-// the series.
+// The motion before the first turning point in reverse, until the body is back at the start of the
+// series.
 struct Mirror {
     DoubleDouble turning;
     SlopePlace end;
@@ -39,7 +39,7 @@ struct Repeat {
     DoubleDouble lasts() const { return last - first; }
 };
 
-// A stretch of the motion. A time belongs to the last stretch that starts at or before it.
+// An interval of time with one law. A time belongs to the last stretch that starts by then.
 struct SlopeStretch {
     double begin;
     double end;  // time up to which the law holds
@@ -56,13 +56,13 @@ struct SlopeFlow {
     double x;
     bool rests;
     SlopeBody body;
-    // All members below are in units of the body.
+    // All members below are in the units of `body`.
     double acceleration;  // initial angular acceleration; constant for a circle
     SlopePlace start;
     Datum datum;  // the start as a datum
     std::vector<SlopeStretch> stretches;
     std::optional<DoubleDouble> turning;  // time of the first turning point, once known
-    bool by_series = false;               // whether not to treat the motion as a swing
+    bool by_series = false;               // true if the motion must not be treated as a swing
 };
 
 // The flow of a body that rolls on a nonzero slope.
@@ -75,11 +75,11 @@ SlopeFlow by_series(const SlopeFlow& flow);
 void prepare(SlopeFlow& flow, double t);
 
 // Appends at least one stretch; false if the last stretch never ends. A swing is computed from
-// series if the body is still near its start at the time `until`, which is in units of the body.
+// series if the body is still near its start at the time `until`, given in units of the body.
 bool grow(SlopeFlow& flow, double until = infinity);
 
-// The state at a time in [0, longest_time], or at n such times, up to which the flow must have been
-// prepared. Ascending times are fastest.
+// The state at a time, or at n times, up to which the flow has been prepared. Ascending times are
+// fastest.
 FlowSample sample(const SlopeFlow& flow, double t);
 void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples);
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);

@@ -14,7 +14,7 @@ namespace {
 // difference of its two terms would be mere rounding error, so the product of physics (62) is used
 // there.
 double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, double c) {
-    constexpr double far = 0.1;  // fraction of the terms above which their difference is accurate
+    constexpr double far = 0.1;  // their difference is accurate above this fraction of the terms
     const double along = body.gravity.along * (body.short_axis2 + body.c2 * square(s));
     const double into = body.gravity.into * body.c2 * s * c;
     const double drive = along - into;
@@ -213,8 +213,7 @@ DoubleDouble time_of_turning(const SlopePiece& piece) {
     return since < infinity ? piece.from.time + since : DoubleDouble{infinity, 0.0};
 }
 
-// The first time at which a piece passes the tip. The search ends where the body turns back, since
-// it may pass the tip again on its way back.
+// The search ends where the body turns back, since it may pass the tip again on its way back.
 double time_of_tip(const SlopePiece& piece) {
     const double until = std::min(piece.lasts, turning_in(piece));
     if (std::isinf(until)) return infinity;
@@ -235,7 +234,7 @@ double time_of_tip(const SlopePiece& piece) {
 }
 
 SlopePlace place_after(const SlopeBody& body, const Datum& start, const SlopePiece& piece) {
-    constexpr double accurate = 0.1;  // above this fraction of its terms, W is accurate enough
+    constexpr double accurate = 0.1;  // W is accurate above this fraction of its terms
     SlopePlace place = place_in(piece, piece.lasts);
     const Geometry here = geometry(body, place);
     const Tracked w = energy_at(body, start, place, here);

@@ -1,5 +1,5 @@
-// Rolling on a slope as power series in time, each about a point of the motion. A series passes a
-// turning point like any other point; each series starts where the previous one loses accuracy.
+// Rolling on a slope as power series in time, each about a point of the motion. Each series starts
+// where the previous one loses accuracy; turning points need no special treatment.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace rolling_ellipse {
 
-// The equilibria of a body on a slope that falls towards growing angles, where h' = h tan(slope),
-// physics (62). The one near the flat position is stable, the one near the tip unstable.
+// The equilibria, where h' = h tan(slope), on a slope that falls in the direction of increasing
+// angles: physics (62). The one near the flat position is stable, the one near the tip unstable.
 struct Equilibria {
     double lying;    // angle from the flat position, 0 or more
     double upright;  // angle from the tip, 0 or less
@@ -22,12 +22,12 @@ struct Equilibria {
 // The equilibria; empty if the slope is too steep. `incline` is the tangent of the slope.
 std::optional<Equilibria> equilibria(const Axes& lying, double incline);
 
-// Body and ground in natural units, powers of two. The slope falls towards growing angles; one that
-// falls the other way is viewed from behind.
+// Body and ground in natural units, powers of two. The slope falls in the direction of increasing
+// angles; a slope that falls the other way is viewed from behind.
 struct SlopeBody {
     double length;  // unit of length [m]
     double time;    // unit of time [s]
-    double side;    // +1, or -1 if the slope is seen from behind
+    double side;    // +1, or -1 if the slope is viewed from behind
     double long_axis;
     double short_axis;
     double short_axis2;
@@ -36,9 +36,9 @@ struct SlopeBody {
     double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28), phi the angle from the flat position
     double d1;
     double gyration2;
-    GroundGravity gravity;  // along > 0: the slope falls towards growing angles
+    GroundGravity gravity;  // its component along the ground is positive
     std::optional<Equilibria> equilibria;
-    double pull;          // gravity times c2, the factor of physics (62)
+    double pull;          // gravity times c2, the factor in physics (62)
     double slowest;       // scale of the angular velocity of a body that starts at rest
     double quarter_path;  // path of the centre in a quarter turn, set by measure_quarter
     double gain;          // gain of W = D omega^2/2 in half a turn downhill, physics (58)
@@ -56,7 +56,7 @@ void measure_quarter(SlopeBody& body);
 struct SlopePlace {
     DoubleDouble time;
     double quarters;
-    DoubleDouble angle;  // angle from that flat position or tip
+    DoubleDouble angle;
     double omega;
     DoubleDouble path;  // path of the centre from the start
 };
@@ -74,7 +74,7 @@ Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to);
 struct Datum {
     double energy;  // W at this point
     Geometry at;
-    double path = 0.0;  // its path from the start of a motion, or its path ahead in a run
+    double path = 0.0;  // path to this point from the start of a motion or a run
 };
 
 // The start of a motion as a datum.
@@ -96,7 +96,7 @@ struct SlopeSeries {
     LongSeries height;
 };
 
-// A stretch of the motion as power series in time.
+// An interval of the motion as power series in time.
 struct SlopePiece {
     SlopePlace from;
     double unit;   // unit of time of the series
@@ -115,7 +115,7 @@ inline SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
 SlopePlace place_in(const SlopePiece& piece, double since);
 
 // The time at which the body turns back within the piece, and the first time before that at which
-// it passes the tip, both measured from the start of the motion; infinite if there is none. The
+// it passes the tip; infinite if there is none. Both are measured from the start of the motion. The
 // start of the piece does not count.
 DoubleDouble time_of_turning(const SlopePiece& piece);
 double time_of_tip(const SlopePiece& piece);
@@ -123,10 +123,10 @@ double time_of_tip(const SlopePiece& piece);
 // The point at the end of a piece, with omega from the energy where that is more accurate.
 SlopePlace place_after(const SlopeBody& body, const Datum& start, const SlopePiece& piece);
 
-// The angular acceleration at a position with this angular velocity.
+// The angular acceleration at a position, given the angular velocity.
 double acceleration_at(const SlopeBody& body, const Geometry& at, double omega);
 
-// The force of the ground on a body of unit mass, in units of the body; x points down the slope.
+// The force of the ground per unit mass, in units of the body; x points down the slope.
 ContactForce contact_force(const SlopeBody& body, const SlopePlace& at);
 
 }  // namespace rolling_ellipse

@@ -1,5 +1,5 @@
-// Points on panels of the angle, and the position as a function of time on parts of panels, in
-// several lanes at once.
+// Points on the panels of a run or a swing, and the position in a part of a panel as a function of
+// time, for several lanes at once.
 #pragma once
 
 #include "numerics/part.hpp"
@@ -65,7 +65,7 @@ struct PanelPlaces : Positions {
     return at;
 }
 
-// N and F at the nodes of a part after W has grown by `gained`, as in `node_forces`.
+// The forces that `node_forces` returns, after W has grown by `gained`.
 template <class PositionsAt>
 [[gnu::always_inline]] inline PartForces forces_at(const SlopeBody& body, const RunPart& part,
                                                    double heading, double gained,
@@ -93,8 +93,8 @@ template <class PositionsAt>
 }
 
 // The polynomial through values at the nodes. Its Legendre coefficients fall by a factor of 5.4 per
-// degree, while the power coefficients of P_k grow by a factor of only 2.4, so that there is hardly
-// any cancellation between the powers.
+// degree, while the power coefficients of P_k grow by a factor of only 2.4. The powers therefore
+// hardly cancel.
 ROLLING_ELLIPSE_WIDE inline PartPolynomial polynomial_through(const PartArray& values) {
     const PartRule& rule = part_rule();
     const PartArray powers = product(rule.powers, product(rule.legendre, values));

@@ -48,7 +48,7 @@ struct Centre {
     double at() const { return quarters * half_pi + angle; }
 };
 
-// Appends the panel from low to high, cut to the half turn that begins where the run starts. The
+// Appends the part of the panel from low to high that lies in the first half turn of the run. The
 // ends of the half turn are accurate even near a tip.
 void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
     const double quarters = run.from.quarters - run.turns;
@@ -64,7 +64,7 @@ void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
                           high < here + pi ? high - centre.at() : end_of_half_turn(2.0)});
 }
 
-// Completes a panel whose ends are given by their angles from the centre.
+// Completes a panel whose ends are still angles from the centre.
 void open(RunPanel& panel) {
     const double s = std::sin(panel.angle);
     const double c = std::cos(panel.angle);
@@ -75,7 +75,7 @@ void open(RunPanel& panel) {
     panel.last = std::asinh(std::tan(panel.last) / panel.grade);
 }
 
-// W at the tip, from W at `at`, without the gain along the slope. The rise of the centre up to the
+// W at the tip, given W at `at`, without the gain along the slope. The rise of the centre up to the
 // tip is computed as a product, which is accurate even for nearly round bodies.
 double over_tip(const SlopeBody& body, double energy, const Geometry& at) {
     return energy - body.gravity.into * (body.c2 * square(at.cos) / (at.h + body.long_axis));
@@ -138,7 +138,7 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
 
 double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from) {
     double least = over_tip(body, energy, at);
-    if (least < -body.gain) return 0.0;  // W gains at most this in half a turn downhill
+    if (least < -body.gain) return 0.0;  // half a turn downhill adds only this gain
     if (from.omega > 0) {
         // The path to the next unstable equilibrium is at least the angle to it times the short
         // semi-axis.
@@ -174,10 +174,10 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
     const double fallen = fall(body, run.datum.at, top).value;
     const double least =
         std::max(run.datum.energy - lost + body.gravity.into * fallen, least_levels * body.gain);
-    // A grade is about the tanh of the imaginary part of the nearest singularity of dt/dphi.
+    // A grade approximates the tanh of the imaginary part of the nearest singularity of dt/dphi.
     const double at_flat = grade_at_flat(body);
     // The singularities near the flat position may be closer to the unstable equilibrium (the hill)
-    // than the singularities of the hill itself.
+    // than those of the hill.
     const double to_flat = half_pi - std::abs(hill);
     const double from_hill = curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
     const double at_hill = std::tanh(std::min(from_hill, to_flat / 2));
@@ -191,7 +191,7 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
         add_panel(run, left, left.at(), split);
         add_panel(run, right, split, right.at());
     };
-    constexpr double widest_gap = 2.0;  // beyond it, v would be too large
+    constexpr double widest_gap = 2.0;  // in a wider gap, v would be too large
     for (int i = -3; i < 5; ++i) {
         const Centre left = centre(i);
         const Centre right = centre(i + 1);

@@ -7,8 +7,8 @@
 // integrand has complex singularities near the flat position, where D = 0, and near the point of
 // least W; the panels are graded towards both as in physics (31).
 //
-// Angles and paths ahead are measured in the direction of the motion: a climb is treated as a
-// motion towards growing angles whose W falls by w per half turn.
+// Angles, and paths called "ahead", are measured in the direction of the motion: in a climb, too,
+// the angle increases, while W falls by w per half turn.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct RunPanel {
     double sin;       // sine and cosine of the centre's angle from a flat position, both
     double cos;       // possibly negated
     double grade;
-    double first;  // v at the ends; until the first part is added, angles from the centre
+    double first;  // v at the ends; angles from the centre before the first part is added
     double last;
 };
 
@@ -41,7 +41,7 @@ struct RunPart {
     PartArray advance;  // d(path)/ds at the nodes, where s in [-1, 1] is the position
     PartArray mass;     // d/ds of the integral of sqrt(D/2) at the nodes
     PartArray level;    // W at the nodes in the first half turn
-    double lasts;       // time of the part in the first half turn
+    double lasts;       // duration of the part in the first half turn
 
     // In a swing: whether the part starts at a turning point.
     bool turns() const { return middle == half; }
@@ -58,9 +58,9 @@ struct SlopeRun {
     std::vector<RunPanel> panels;  // panels of one half turn, in the direction of motion
     std::vector<RunPart> parts;    // parts of the panels added so far by `extend`
     double path_ahead;             // path from `from` to the end of the last part
-    double known;                  // time in the first half turn up to that end
-    double mass;                   // int sqrt(D/2) dphi up to that end
-    std::size_t next_panel;        // indices of the next panel, and of the next part in it
+    double known;                  // time from `from` to the end of the last part
+    double mass;                   // int sqrt(D/2) dphi up to the end of the last part
+    std::size_t next_panel;        // indices of the panel, and of the part in it, to be added next
     int next_part;
 
     bool is_complete() const { return next_panel == panels.size(); }
@@ -72,14 +72,14 @@ struct SlopeRun {
 SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& from,
                    const Datum& here, double half_turns);
 
-// Adds parts until the first half turn is known up to a time after `from`, or is complete.
+// Adds parts until the first half turn is known up to a time `since` after `from`, or is complete.
 void extend(SlopeRun& run, double since);
 
 // Largest number of half turns; beyond it, the phase is lost in the rounding of that number.
 inline constexpr double most_half_turns = 1e15;
 
 // Number of half turns from a point, in its direction of motion, during which W is large enough
-// relative to w for the sum.
+// relative to w for the sum over half turns.
 double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from);
 
 // d(time)/ds at the nodes of a part after W has grown by `gained`; s in [-1, 1] is the position in
@@ -102,7 +102,7 @@ class RunTimes {
 
     const SlopeRun& run_;
     double lowest_ = infinity;          // least W of the first half turn
-    std::vector<DoubleDouble> begins_;  // start times of the first half turns (uphill: of the last)
+    std::vector<DoubleDouble> begins_;  // start times of the first half turns (uphill, of the last)
 };
 
 // Forces at the nodes of a part after n half turns, per unit mass; x points in the direction of
@@ -123,10 +123,10 @@ SlopePlace place_after(const SlopeRun& run, double half_turns);
 struct PartReading {
     const RunPart* part;
     double half_turns;    // number of half turns before this one
-    double lasts;         // time of the part
+    double lasts;         // duration of the part
     PartPolynomial time;  // derivatives of time and path with respect to the position
     PartPolynomial path;
-    std::array<double, 5> about_place;  // approximate position from the fraction of the part's time
+    std::array<double, 5> about_place;  // approximate position after a fraction of this time
 };
 
 // Computes points at times after `from` that `extend` has reached. Integrals over the current half

@@ -69,7 +69,7 @@ double RunReader::since_begin(double time) const {
     return double(DoubleDouble{time, 0.0} - run_.from.time - begin_);
 }
 
-// Whether a time since the start of the half turn is well inside it, so that the result does not
+// Whether a time since the start of the half turn is so far from both ends that the result does not
 // depend on earlier calls.
 bool RunReader::is_well_inside(double since) const {
     constexpr double margin = 1e-9;  // fraction of a half turn, far above rounding
@@ -85,7 +85,7 @@ std::size_t RunReader::take_parts_off(double& since) const {
     return i;
 }
 
-// Makes the half turn that contains a time after `from` the current one.
+// Moves to the half turn that contains a time after `from`.
 void RunReader::move_to(DoubleDouble since) {
     constexpr int most_tries = 20;
     const double last = run_.is_complete() ? run_.half_turns - 1 : 0.0;

@@ -31,8 +31,8 @@ struct Well {
 // The sign of the angles from the bottom on a side of a well: uphill (0) or downhill (1).
 double outwards(std::size_t side) { return side == 0 ? -1.0 : 1.0; }
 
-// The panel about the bottom with angles measured along a side of the well, outwards (+1) or
-// towards the bottom (-1).
+// The panel about the bottom for a side of the well, with angles measured outwards (direction +1)
+// or towards the bottom (-1).
 WellPanel bottom_panel(const SlopeBody& body, const Well& well, std::size_t side,
                        double direction) {
     const double seen = outwards(side) * direction;
@@ -107,8 +107,7 @@ Reached reached(const SlopeBody& body, const WellPanel& panel, double v) {
 
 // ------------------------------------------------------------------------- turning points
 
-// The change of W from the centre of a panel to the coordinate v, and its first two derivatives
-// with respect to v.
+// The change of W from the centre of a panel to a coordinate v, with its first two derivatives.
 struct Change {
     double energy;
     double rate;
@@ -245,8 +244,8 @@ std::optional<TurningPoints> turning_points(const SlopeBody& body, const Well& w
 
 // ---------------------------------------------------------------------------------- sides
 
-// Appends the part of a panel between two coordinates, given W at the first one; returns W at the
-// last one. At the turning point, W is 0, and dW/dv has a factor v.
+// Appends the part of a panel from `first` to `last`, given W at `first`; returns W at `last`. At
+// the turning point, W is 0, and dW/dv has a factor v.
 ROLLING_ELLIPSE_WIDE double add_part(const SlopeBody& body, WellSide& side, std::size_t panel,
                                      double first, double last, double energy) {
     const PartRule& rule = part_rule();
@@ -283,7 +282,7 @@ WellSide side_of_well(const SlopeBody& body, const Well& well, std::size_t i,
                       const std::array<double, 2>& to_bottoms) {
     constexpr double widest_gap = 0.6;   // beyond it, the rim has no effect near the turning point
     constexpr double widest_part = 1.0;  // the complex zeros of D and h are at least pi/2 away
-    constexpr double safe = 1.5;         // largest ratio of width to distance from a singularity
+    constexpr double safe = 1.5;         // limit on (width of a part)/(distance to a singularity)
     const double to_bottom = to_bottoms[i];
     const double from_rim = well.to_rim[i] - to_bottom;
     const WellPanel flat = bottom_panel(body, well, i, -1.0);
@@ -349,8 +348,9 @@ Ahead ahead_at(const WellSide& side, double angle, double to_bottom) {
 
 // -------------------------------------------------------------------------------- reading
 
-// The side and the part in which the body is at a given time, the time between the given time and
-// the end of the part nearer the turning point, and the direction of motion: +1 towards the bottom.
+// The side and the part in which the body is at a given time, the time that it takes from the end
+// of the part nearer the turning point to its position, and the direction of motion: +1 towards the
+// bottom.
 struct Phase {
     std::size_t side;
     std::size_t part;
@@ -365,7 +365,7 @@ Phase phase_at(const Swing& swing, double time) {
     const DoubleDouble rest = since - lasts * swings;
     const std::size_t from = std::fmod(swings, 2.0) != 0 ? 1 : 0;
     const bool leaves = double(rest) <= double(swing.sides[from].lasts);
-    const double after = double(leaves ? rest : lasts - rest);  // negative only by rounding
+    const double after = double(leaves ? rest : lasts - rest);  // negative only due to rounding
     Phase found{leaves ? from : 1 - from, 0, std::abs(after), leaves == (after >= 0) ? 1.0 : -1.0};
     const auto& parts = swing.sides[found.side].parts;
     for (; found.part + 1 < parts.size() && found.since > parts[found.part].lasts; ++found.part) {
@@ -375,7 +375,7 @@ Phase phase_at(const Swing& swing, double time) {
     return found;
 }
 
-// Prepares a part for the computation of points.
+// Prepares the computation of points on a part.
 ROLLING_ELLIPSE_WIDE WellReading well_reading(const RunPart& part) {
     PartArray level = part.level;
     for (int i = 0; i < part_order; ++i) {

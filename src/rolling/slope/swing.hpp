@@ -1,12 +1,13 @@
 // Rocking in a well: the whole motion by quadrature, at a cost independent of the number of swings.
 //
-// At the bottom of a well, gravity has no moment. A side of the well is the motion from a turning
-// point to the bottom, which takes the time int sqrt(D/2) W^(-1/2) dtheta. W = D omega^2/2 is
-// itself the integral, from the turning point, of the moment of gravity in physics (62). The moment
-// is a product, so that W is not a difference of large terms where it is small. Each side has two
-// panels of a coordinate v in which the integrand is smooth. Near the turning point, tan(theta -
-// rim) is a multiple of cosh(v), which removes the square root of W; elsewhere, tan(theta) is a
-// multiple of sinh(v), since D has complex zeros near the flat position.
+// A well lies between two unstable equilibria, its rims; at its bottom, the stable equilibrium,
+// gravity has no moment. A side of the well is the motion from a turning point to the bottom, which
+// takes the time int sqrt(D/2) W^(-1/2) dtheta. W = D omega^2/2 is the integral, from the turning
+// point, of the moment of gravity in physics (62), which is a product. Small values of W are
+// therefore not differences of large terms. Each side has two panels of a coordinate v in which the
+// integrand is smooth. Near the turning point, tan(theta - rim) is a multiple of cosh(v), which
+// removes the square root of W; elsewhere, tan(theta) is a multiple of sinh(v), since D has complex
+// zeros near the flat position.
 //
 // Angles and paths ahead are measured from the turning point of a side towards the bottom.
 #pragma once
@@ -28,8 +29,8 @@ struct WellPanel {
     double grade;
     double value;          // f at the centre
     double rate;           // f' at the centre
-    SineCosine to_bottom;  // sine and cosine of the angle from the centre ahead to the bottom
-    SineCosine from_rim;   // sine and cosine of the angle from the rim behind to the centre
+    SineCosine to_bottom;  // sine and cosine of the angle from the centre to the bottom
+    SineCosine from_rim;   // sine and cosine of the angle from the rim to the centre
 };
 
 // A PartReading with a polynomial for W or, in a part that starts at a turning point, for W/(1 +
@@ -39,7 +40,7 @@ struct WellReading : PartReading {
 };
 
 struct WellSide {
-    double heading;                   // +1 if the bottom is at the greater angle
+    double heading;                   // +1 if the bottom is at a greater angle than the rim
     std::array<WellPanel, 2> panels;  // about the turning point, and about the bottom
     std::vector<RunPart> parts;       // from the turning point to the bottom
     double path_ahead;                // path from the turning point to the bottom
@@ -55,7 +56,7 @@ struct Swing {
     DoubleDouble lasts() const { return sides[0].lasts + sides[1].lasts; }
 };
 
-// The motion from a given start, if the body rocks and turns back well before the rims of the well.
+// The motion from a given start; empty unless the body turns back well before both rims of a well.
 std::optional<Swing> swing_from(const SlopeBody& body, const SlopePlace& start);
 
 // N and F at the nodes of a part, per unit mass; x points ahead.

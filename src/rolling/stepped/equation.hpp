@@ -98,7 +98,7 @@ class RollingEquation {
         return {mass * normal, mass * friction};
     }
 
-    // The acceleration with a normal force that acts `lever` ahead of the contact. The couple
+    // The acceleration with a normal force that acts `lever` ahead of the contact. Its couple
     // changes the angular acceleration by -s, s = lever N/(m M), where N is the normal force
     // without the couple and M = D + lever h': physics (64).
     double acceleration(const Geometry& at, double omega, double lever) const {
@@ -133,8 +133,8 @@ class RollingEquation {
         double c2;  // a^2 - b^2
     };
 
-    // The acceleration, from physics (18) multiplied by h^4, takes one square root and one
-    // division, neither of which waits for the other. With u = h^2, p = h h',
+    // Physics (18), multiplied by h^4, takes one square root and one division, neither of which
+    // waits for the other. With u = h^2, p = h h',
     //     theta'' (u^2 (k^2 + u) + u p^2)
     //         = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
     [[gnu::always_inline]] double acceleration(const Squares& axes, double s, double c,

@@ -41,9 +41,9 @@ ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double middle, const
     std::memcpy(values, &z, sizeof z);
 }
 
-// The path of the centre at many angles, each usually close to the previous one, by Taylor series
-// of the integral of h, physics (9), about the middles of intervals. A body that rolls over passes
-// through the same intervals in each half turn, so the intervals are stored.
+// The path of the centre at many angles, each usually close to the previous one, from Taylor series
+// of the integral of h, physics (9), each for an interval of angles. The intervals are stored,
+// since a body that rolls over passes through the same ones in each half turn.
 class PathSeries {
   public:
     explicit PathSeries(const Axes& axes)
@@ -79,7 +79,7 @@ class PathSeries {
         double middle = 0.0;
         Series path{};
 
-        // False at the ends, which are left to `move_to`.
+        // False at the ends; for them, `move_to` selects the interval.
         bool is_inside(double theta) const { return low < theta && theta < high; }
 
         // The mirrored interval, for angles of the opposite sign.
@@ -128,8 +128,8 @@ class PathSeries {
         } while (share * width > distance(interval.middle));
         interval.high = interval.low + width;
 
-        // The series of u = h^2 from u'' = -4 u + constant, then that of h and of its integral, the
-        // path
+        // The series of u = h^2 from u'' = -4 u + constant, then those of h and of its integral,
+        // the path
         const double s = std::sin(interval.middle);
         const double c = std::cos(interval.middle);
         Series u;
@@ -158,7 +158,7 @@ class PathSeries {
 
 // States at points of a motion. The angle at a knot, and the path of the half turns before the
 // knot, are computed only once for all points of its step. x is computed later, for several points
-// at once, so that their paths are computed side by side.
+// side by side.
 class StepView {
   public:
     explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
@@ -204,7 +204,7 @@ class StepView {
     const Knot<2>* knot_ = nullptr;
     DoubleDouble theta_;
     double path_before_ = 0.0;                 // path of the half turns before the knot
-    std::array<double, most_waiting> angles_;  // angles left after whole half turns
+    std::array<double, most_waiting> angles_;  // the samples' angles, less those half turns
     std::array<FlowSample*, most_waiting> samples_;
     std::size_t waiting_ = 0;
 };

@@ -11,13 +11,13 @@
 
 namespace rolling_ellipse {
 
-// A rolling motion integrated in steps. The angle is stored as half turns, after which the ellipse
-// looks the same, and a remainder, so that it stays precise however far the body rolls.
+// A rolling motion integrated in steps. The angle is stored as half turns and a remainder, so that
+// it stays precise however far the body rolls.
 struct SteppedRolling {
     RollingEquation equation;
     Axes axes;
     Settings settings;
-    DoubleDouble theta_base;  // angle at which half turns and remainder are 0
+    DoubleDouble theta_base;  // angle at which the half turns and the remainder are 0
     DoubleDouble x_base;      // x at theta_base
     double half_turn_path;    // path of the centre in a half turn
     Steps<2> steps;
@@ -41,7 +41,7 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);
 
 // Energies at points along a motion; `evaluations` is the number of evaluations of the equation
-// that the integration took. The constraint residuals are 0.
+// that the integration took. The constraint residuals are set to 0.
 std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations);
 
 }  // namespace rolling_ellipse
