@@ -61,9 +61,10 @@ NEAREST = {
     "_ask": ["scene", "refusals", "border"],
     "_motion": ["trajectory", "contact", "border"],
     "_command_line": ["project", "border", "trajectory"],
-    "_verbs": ["trajectory", "outcome", "refusals", "proof", "rolling"],
+    "_verbs": ["trajectory", "outcome", "refusals", "proof", "rolling", "fit"],
     "batches": ["batches", "refusals"],
     "export": ["export", "refusals", "trajectory"],
+    "films": ["fit"],
     "python": ["trajectory", "scene", "outcome", "refusals", "border", "batches"],
 }
 
