@@ -76,7 +76,7 @@ def __getattr__(name: str) -> _Any:
     else:
         try:
             found = _import_module(_PLACES[name], __name__)
-        except AttributeError as error:  # `from … import` would replace its message
+        except AttributeError as error:  # `from … import` would hide its message
             raise ImportError(f"{name} needs a module that does not load: {error}") from error
         value = found if _PLACES[name] == f".{name}" else getattr(found, name)
     globals()[name] = value

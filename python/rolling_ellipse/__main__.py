@@ -1,4 +1,4 @@
-"""The command line: python -m rolling_ellipse --help."""
+"""The command line; see python -m rolling_ellipse --help."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from ._pictures.animation.movies import film_suffix
 from ._pictures.axes import save_figure
 from ._player import animate, explore
 
-_FPS = 25.0  # frames per second, supported by every format of films
+_FPS = 25.0  # a frame rate that every film format supports
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-# Command-line options by the names of arguments with which error messages of functions start
+# Names of arguments with which error messages start, and the options that replace them
 _OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time", "source": "--scene"}
-_INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes in shells after SIGINT and SIGPIPE
+_INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes that shells report after SIGINT and SIGPIPE
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -34,7 +34,7 @@ def main(arguments: list[str] | None = None) -> int:
     -------
     int
         0 on success; 1 if the motion could not be followed to its end (the summary then covers the
-        computed part), or an answer to `benchmark` is wrong; 2, with a message of one line, on bad
+        computed part), or `benchmark` finds a wrong answer; 2, with a one-line message, on bad
         input or if a file cannot be written. A StabilityWarning, or a warning that blows are
         omitted, is also printed as one line.
     """
@@ -49,9 +49,9 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(typed[bool(command) :])
     try:
         with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("ignore")  # the summary states how long the model is valid
+            warnings.simplefilter("ignore")  # the summary says how long the model is valid
             warnings.simplefilter("always", StabilityWarning)
-            warnings.filterwarnings("always", "a scene has no blows")  # a link's blows are omitted
+            warnings.filterwarnings("always", "a scene has no blows")  # of links
             code, message = action(options)
     except (ValueError, TypeError, OSError, ImportError, RuntimeError, MemoryError) as error:
         _complain(error)
@@ -68,7 +68,7 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
         if (path := getattr(options, name)) is not None:
             shell.require_file(f"--{name}", path)
     if options.save is not None:
-        film_suffix(options.save, _FPS, "--save")  # reject a wrong name before any work
+        film_suffix(options.save, _FPS, "--save")  # reject a bad file name before simulating
     how = {name: getattr(options, name) for name in ("model", "method", "step")}
     trajectory = simulate(shell.chosen_scene(options), options.time, **how, raise_on_failure=False)
     files = []
@@ -109,7 +109,7 @@ def _complain(error: Exception | Warning | str) -> None:
 
 def run() -> int:
     """Run the command line for a shell, with exit codes for Ctrl-C, closed pipes and full disks."""
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no lines of warnings
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no warnings on stderr
     try:
         try:
             return main()

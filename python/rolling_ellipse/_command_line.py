@@ -50,7 +50,7 @@ _BASE = (
 )
 _ABOUT = str(benchmark.__doc__).partition("\n\nExamples")[0].replace("``", "")
 _SCRIPT = "rolling-ellipse"
-# argparse would take -1e-3, -inf and -nan for unknown options
+# argparse would treat -1e-3, -inf and -nan as unknown options
 _NEGATIVE = re.compile(r"-(\d[\d_]*\.?[\d_]*|\.[\d_]+)(e[-+]?\d+)?$|-inf(inity)?$|-nan$", re.I)
 _SHOWN_EVENTS = 10
 _REPEATS = {"rocks": "full swing", "rolls_over": "full turn"}
@@ -64,7 +64,7 @@ class OneLineParser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {' '.join(message.split())}\n")
 
     def print_help(self, file: Any = None) -> None:
-        """Print with `print`, which raises if writing fails; argparse would be silent."""
+        """Print with `print`, which raises if writing fails; argparse ignores such failures."""
         print(self.format_help(), end="", file=file)
 
 
@@ -89,7 +89,6 @@ def _scene_parser(prog: str, description: str, epilog: str | None = None) -> One
 
 
 def motion_parser() -> OneLineParser:
-    """Return the parser of the command that simulates a scene."""
     parser = _scene_parser(
         PROGRAM,
         "Simulate an ellipse on the ground and report what happens.",
@@ -112,7 +111,6 @@ def motion_parser() -> OneLineParser:
 
 
 def explore_parser() -> OneLineParser:
-    """Return the parser of `explore`."""
     parser = _scene_parser(f"{PROGRAM} explore", "Play with a scene in a browser.")
     parser.add_argument("--time", type=float, metavar="S", help="time to follow motions for")
     parser.add_argument(
@@ -124,7 +122,6 @@ def explore_parser() -> OneLineParser:
 
 
 def examples_parser() -> OneLineParser:
-    """Return the parser of `examples`."""
     about = "Write the notebooks, without outputs, and the tables of reference states."
     parser = OneLineParser(prog=f"{PROGRAM} examples", description=about)
     parser.add_argument("folder", metavar="DIR", help="folder, created if it does not exist")
@@ -140,7 +137,7 @@ def require_file(option: str, path: str) -> None:
 def chosen_scene(options: argparse.Namespace) -> Scene:
     """Return the scene of --scene, or by default the report's, changed by the other options.
 
-    The blow of the scene remains unless --omega sets the start or --press replaces the blow.
+    The scene keeps its blow unless --press replaces it or --omega removes it.
 
     Raises
     ------
@@ -173,7 +170,6 @@ def _read_scene(given: str) -> Scene:
 
 
 def benchmark_parser() -> OneLineParser:
-    """Return the parser of `benchmark`."""
     parser = OneLineParser(prog=f"{PROGRAM} benchmark", description=_ABOUT)
     actions = parser.add_subparsers(dest="action", required=True, parser_class=OneLineParser)
     actions.add_parser("list", help="print the problems and the abilities that they need")
@@ -216,7 +212,7 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
 
 
 def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
-    """Run an engine or a function; report an error raised in it as a sentence with the line."""
+    """Run an engine or a user's function; report an error in one sentence that gives the line."""
     mine = _function(name)
 
     def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:
@@ -255,17 +251,17 @@ def _function(name: str) -> Any:
 
 
 def _failed(name: str, error: Exception, hint: str = "") -> RuntimeError:
-    """Return an error in a user's code as one sentence, with the line that raised it."""
+    """Return an error whose one-sentence message gives the line that raised `error`."""
     last = traceback.extract_tb(error.__traceback__)[-1]
     place = f"line {last.lineno} of {Path(last.filename).name}"
     return RuntimeError(f"{name} raised {type(error).__name__} in {place}: {error}{hint}")
 
 
 def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
-    """Return the facts of a motion by name, with the files written; missing values are None."""
+    """Return named facts about a motion and the files written; a missing value is None."""
     scene = trajectory.scene
     certificate, start = certify(scene), scene.initial_state
-    # the numbers of the certificate describe rolling, and are left out for other motions
+    # the numbers of the certificate describe rolling and are omitted for other motions
     rolls = trajectory.model != "contact" or certificate.validity is Validity.VALID
     facts: dict[str, Any] = {
         "scene": _scene_facts(scene),
@@ -322,7 +318,7 @@ def _finite(value: float | None) -> float | None:
 
 
 def as_text(facts: dict[str, Any], trajectory: Trajectory) -> str:
-    """Return the result of `summary` as text, with a line for each fact."""
+    """Return the result of `summary` as a table of names and values."""
     scene = {name: value for name, value in trajectory.scene._rows()}
     start, blow = scene.pop("start"), scene.pop("impulse", "none")
     rows = [
@@ -359,7 +355,7 @@ def _motion_rows(facts: dict[str, Any], trajectory: Trajectory) -> list[tuple[st
 
 
 def _repeat(facts: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
-    """Return the row with the time after which a motion repeats, or why it does not."""
+    """Return the table row with the period of a motion, or with the reason why it has none."""
     if facts["period"] is not None:
         return _REPEATS.get(facts["outcome"], "swing or turn"), f"{facts['period']:.12g} s"
     name = "swing or turn"

@@ -17,7 +17,7 @@ _Three = tuple[FloatArray, FloatArray, FloatArray]
 _Arrays = dict[str, FloatArray]
 _Tables = dict[str, npt.NDArray[Any]]
 _Columns = list[FloatArray]  # arguments, as `broadcast` returns them
-_Passages = tuple[list[FloatArray], list[str]]  # times for each value; where some may be missing
+_Passages = tuple[list[FloatArray], list[str]]  # times for each value; where times may be missed
 
 class _Named:
     """Enums whose members also equal their names (`equal_to_names` in `_ask.printing`)."""
@@ -79,7 +79,7 @@ class Quantity(enum.Enum):
     omega = 3
     contact_x = 4
 
-FIELDS: dict[str, dict[str, str]]  # units of the fields of each struct, by name
+FIELDS: dict[str, dict[str, str]]  # unit of each field of each struct, by name
 COLUMNS: dict[str, tuple[str, ...]]  # column names of the arguments and results of `simulate_table`
 STATS: tuple[str, ...]
 MODELS: tuple[_settings.Model, ...]  # in the order of their codes, like METHODS

@@ -52,14 +52,14 @@ _MEASURES: dict[Measure, Callable[[FloatArray], Any]] = {
     "median": lambda errors: np.median(errors, axis=-1),
     "rms": lambda errors: np.sqrt(np.mean(errors**2, axis=-1)),
 }
-_INTERVALS, _HALVINGS = 40, 8  # intervals per coefficient of the first grid; number of halvings
+_INTERVALS, _HALVINGS = 40, 8  # first grid: intervals per coefficient; number of halvings
 _STEPS = _INTERVALS * 2**_HALVINGS  # intervals per coefficient of the finest grid
 _REACH = 2  # steps of the finer grid on either side of a leading point
 _LEADING = 50  # number of best points for the whole series that are refined
 _SPLITS = 25  # number of random splits into halves; these determine the scatter to within 10 %
 _FEWEST = 20  # minimum number of impacts for estimating errors from halves of the series
 _BLOCK = 2**20  # largest number of impacts predicted in one call
-_COARSE, _FINE = 24, 64  # cells per coefficient: grids that locate the peak, and last grid
+_COARSE, _FINE = 24, 64  # cells per coefficient: grids that locate the peak; last grid
 _DEPTH = 25.0  # the next grid covers the points whose likelihood exceeds exp(-25) times the maximum
 _ZOOMS = 12  # largest number of coarse grids; each is at least 1/12 as wide as the previous one
 
@@ -81,8 +81,7 @@ def collide(
 
     Coulomb friction acts during the whole collision: the contact may stick, or its slip may
     reverse. The laws differ in when restitution ends. Simulations use "stronge"; the other laws are
-    for comparison.
-    All arguments broadcast by NumPy's rules.
+    for comparison. All arguments broadcast.
 
     Parameters
     ----------
@@ -92,7 +91,7 @@ def collide(
     a, b : float or array_like
         Semi-axes [m].
     friction, restitution : float or array_like
-        Coefficients: from 0 to 1e6 or infinite, and between 0 and 1.
+        Coefficients: friction from 0 to 1e6, or infinite; restitution from 0 to 1.
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc, (a^2 + b^2)/4.
     law : {"stronge", "poisson", "newton"}
@@ -136,8 +135,8 @@ def collide(
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     """Return sqrt(2 T/m) = sqrt(x_dot^2 + z_dot^2 + k^2 omega^2) [m/s] for the kinetic energy T.
 
-    For the difference between the velocities of two motions, this speed measures how far apart the
-    motions are, with translation and rotation weighted as in the kinetic energy.
+    Applied to the difference between two sets of velocities, it measures how far apart they are,
+    with translation and rotation weighted as in the kinetic energy.
 
     Parameters
     ----------
@@ -181,7 +180,7 @@ class FittedImpacts(Listed):
     restitution, friction : float
         The coefficients that fit best; friction may be infinite.
     errors : ndarray, shape (n,)
-        Kinetic speed of predicted minus measured velocities after each impact [m/s].
+        Kinetic speed of the predicted minus the measured velocities after each impact [m/s].
     restitution_error, friction_error : float
         Standard errors: the scatter of the fits to 50 random halves of the series, or, if larger,
         the range of equally good coefficients divided by sqrt(12). The scatter of friction is
@@ -314,10 +313,10 @@ def fit(
     The measure is evaluated on a grid over restitution (0 to 1) and the angle of friction (0 to a
     right angle, which is infinite friction). The grid is then refined around the 50 best points for
     the whole series and around the best point for each of 50 random halves of it. Eight refinements
-    halve the step to 1e-4. The halves are included because the median has many local minima, and
+    reduce the step to 1e-4. The halves are included because the median has many local minima, and
     each serious candidate is the best point for some half. The fit to a half is the best of all
-    points tried. The fits to halves scatter about the fit to the series as the fit to
-    the series scatters about the truth; for a linear least-squares fit this is exact [1]_.
+    points tried. The fits to halves scatter about the fit to the series as the fit to the series
+    scatters about the truth; for a linear least-squares fit this is exact [1]_.
 
     The likelihood is normal in x_dot, z_dot and k omega: N numbers, three for each impact.
     Integrated over sigma it is Gamma(N/2)/2 (pi S)^(-N/2), where S is the sum of squared errors
@@ -375,7 +374,7 @@ def fit(
         return errors(velocities, end[:, None])
 
     def measures(points: FloatArray) -> FloatArray:
-        """Return the measure at each point: for all impacts first, then for each half."""
+        """Return the measure at each point: first for all impacts, then for each half."""
         off = off_at(points)
         return np.stack([measure(off[:, chosen]) for chosen in (order, *halves)])
 
@@ -405,7 +404,7 @@ def fit(
 
 
 def _halves(places: Any) -> list[Any]:
-    """Return the indices of the impacts in both halves of each split; none for a single impact."""
+    """Return the indices of the impacts in each half of each split; none for a single impact."""
     drawn = np.random.default_rng(0).random((_SPLITS, places.size))
     splits = places[np.argsort(drawn, axis=1, kind="stable")]
     return [half for split in splits for half in np.array_split(split, 2) if places.size > 1]
@@ -490,7 +489,7 @@ def _standard_errors(points: FloatArray, table: FloatArray) -> tuple[float, floa
 
 
 def _series(name: str, columns: Sequence[Any], count: int) -> FloatArray:
-    """Return `count` columns of one number per impact as the rows of an array of finite numbers."""
+    """Return `count` columns, with one finite number per impact, as the rows of an array."""
     rows = finite(name, columns)
     if rows.ndim != 2 or len(rows) != count or rows.shape[1] == 0:
         raise ValueError(

@@ -1,8 +1,8 @@
 """Conversion of arguments to doubles, with errors that name the argument.
 
 Real numbers within the range of doubles are accepted: those of Python and NumPy (including
-zero-dimensional arrays), Decimals and Fractions. Text, complex numbers, times, masked entries and
-quantities with units are rejected. An array of shape (1,) does not count as a number.
+zero-dimensional arrays), Decimals and Fractions. Text, complex numbers, datetimes, masked entries
+and quantities with units are rejected. An array of shape (1,) does not count as a number.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _LONGEST = 300  # largest number of characters of a value in a message
 _FEW = 64  # longest list for the fast path, which saves no time for longer ones
 _FLOATS = {float}
 _MOST_AXES = 32  # largest number of axes that NumPy broadcasts
-_PIECE = 2**17  # numbers converted at once, in at most 10 ms; Ctrl-C acts between pieces
+_PIECE = 2**17  # numbers converted at once (at most 10 ms); Ctrl-C acts between pieces
 _SLICED = (list, tuple, range)
 _TEXT = (str, bytes, bytearray, memoryview)  # sequence types that are not searched for numbers
 _PLAIN = frozenset({float, int, bool, np.float64})  # number types that need no further check
@@ -48,7 +48,7 @@ _short.maxlist = _short.maxtuple = _short.maxdict = _short.maxset = _short.maxde
 
 
 def number(name: str, value: Any) -> float:
-    """Return a number as a float; masks, units and values beyond doubles are rejected."""
+    """Return a number as a float; reject masks, units and values too large for a double."""
     if type(value) is float:  # the fast path: most arguments are floats
         return value
     if type(value) in _PLAIN:
@@ -202,7 +202,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
             if _PLAIN.issuperset(map(type, piece)):
                 continue
             nested = [entry for entry in piece if type(entry) in _SLICED]
-            if nested:  # one call for all of them, since there may be a million pairs
+            if nested:  # one call for all of them, since there may be a million
                 if axes == _MOST_AXES:
                     deep = shown(nested[0])
                     raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {deep}")
@@ -213,7 +213,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
                         _require_plain(name, entry, axes + 1)
         return
     is_masked = isinstance(value, np.ndarray) and np.any(getattr(value, "mask", False))
-    # The array of an xarray object, which may have units, is in `data`
+    # An xarray object stores its array, which may have units, in `data`
     held = None if isinstance(value, np.ndarray) else getattr(value, "data", None)
     if is_masked or _has_units(value) or _has_units(held):
         raise TypeError(
@@ -270,7 +270,7 @@ def coordinates(name: str, value: Any) -> FloatArray:
 
 
 def common_shape(arrays: dict[str, FloatArray], axes: slice) -> tuple[int, ...]:
-    """Return the common shape of the given axes of all arrays; ValueError if there is none."""
+    """Return the common shape of the given axes of all arrays, or raise ValueError."""
     try:
         return np.broadcast_shapes(*(values.shape[axes] for values in arrays.values()))
     except ValueError:
@@ -279,7 +279,7 @@ def common_shape(arrays: dict[str, FloatArray], axes: slice) -> tuple[int, ...]:
 
 
 def require_together(**arguments: Any) -> None:
-    """Raise ValueError unless the axes before the last of all arguments broadcast together."""
+    """Raise ValueError unless all arguments broadcast together, apart from their last axes."""
     common_shape({name: array(name, value) for name, value in arguments.items()}, slice(-1))
 
 
@@ -297,7 +297,7 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
 
 
 def shaped(flat: Any, shape: tuple[int, ...]) -> Any:
-    """Return a 1-D array, or each array of a tuple, in the given shape; for () return a float."""
+    """Reshape a 1-D array, or each array of a tuple; the shape () gives a float."""
     if isinstance(flat, tuple):
         return tuple([shaped(values, shape) for values in flat])
     return float(flat[0]) if shape == () else flat.reshape(shape)
@@ -336,7 +336,7 @@ def _number_of(name: str, known: dict[str, FloatArray]) -> FloatArray:
 
 
 def _with_indices(message: str, shape: tuple[int, ...]) -> str:
-    """Return a core message about ``a[7]`` with 7 replaced by the indices in `shape`."""
+    """Replace a flat index in a core message, such as ``a[7]``, with one index per axis."""
     if len(shape) < 2:
         return message
     name, rest = message.split(" ", 1)
@@ -349,7 +349,7 @@ def _with_indices(message: str, shape: tuple[int, ...]) -> str:
 
 def uniform_disc(a: Any, b: Any) -> FloatArray:
     """Return k^2 = I/m = (a^2 + b^2)/4 [m^2] of uniform discs with semi-axes a, b [m]."""
-    with np.errstate(over="ignore"):  # the core rejects an a or b this large, and names it
+    with np.errstate(over="ignore"):  # the core rejects an a or b this large
         squares: FloatArray = (array("a", a) ** 2 + array("b", b) ** 2) / 4
     return squares
 
@@ -377,7 +377,7 @@ def file_name(name: str, value: Any) -> str:
 
 
 def readable(name: str, value: Any) -> str:
-    """Return the path of a file or folder as text; reject pipes and devices, which may not end."""
+    """Return the path of a file or folder as text; reject pipes and devices, which have no end."""
     path = file_name(name, value)
     if stat.S_IFMT(os.stat(path).st_mode) not in (stat.S_IFREG, stat.S_IFDIR):
         raise ValueError(f"{name} must name a file, got {path!r}, which is a pipe or a device")

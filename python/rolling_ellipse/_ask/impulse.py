@@ -21,8 +21,8 @@ _Given = ParamSpec("_Given")
 class Impulse:
     """An impulse applied to a point of the body, or many impulses.
 
-    Arrays broadcast, and their common shape has one impulse for each element. `outcome` accepts
-    many impulses, a Scene only one. Arrays are stored as read-only copies. Two objects are equal if
+    Arrays broadcast; each element of their common shape is one impulse. `outcome` accepts many
+    impulses, a Scene only one. Arrays are stored as read-only copies. Two objects are equal if
     their values and array shapes are equal.
 
     Parameters
@@ -84,7 +84,7 @@ class Impulse:
 
     @classmethod
     def press(cls, F: Any, d: Any) -> Impulse:
-        """Return the downward blow of the report's Figure 9: F [N s] at distance d [m] from G.
+        """Return the downward blow F [N s] of the report's Figure 9, at d [m] from the centre.
 
         A negative F is a pull, which no contact can exert. It gives a ValidityWarning.
 
@@ -130,7 +130,7 @@ class Impulse:
         return hash(self._values())
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Make the arrays read-only again: pickles and deep copies leave them writeable."""
+        """Make the arrays read-only again: pickling and deep copying make them writeable."""
         self.__dict__.update(state)
         for values in self._arrays.values():
             values.flags.writeable = False

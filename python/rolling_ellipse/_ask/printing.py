@@ -49,7 +49,7 @@ def equal_to_names(kind: _Enum) -> _Enum:
     return kind
 
 
-# These enums print as Kind.NAME. By default Python prints <Kind.NAME: 1> in lists, or 1.
+# These enums print as Kind.NAME; by default lists show <Kind.NAME: 1>, and an IntEnum prints as 1
 for _kind in (EventKind, Mode, Outcome, Validity):
     equal_to_names(_kind)
     for _name, _face in {"__repr__": _dotted, "__str__": _dotted, "__format__": _formatted}.items():
@@ -74,7 +74,7 @@ codecs.register_error("rolling_ellipse", _without_code)
 
 
 def printable(text: str) -> str:
-    """Return a text in which ASCII replaces all characters that standard output cannot encode.
+    """Return the text with ASCII in place of characters that standard output cannot encode.
 
     On an ASCII, Latin-1 or cp1252 console, printing an arrow would raise an error.
     """

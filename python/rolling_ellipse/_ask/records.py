@@ -1,4 +1,4 @@
-"""Helpers for dataclasses: pickles of the fields alone, and values computed on first access."""
+"""Helpers for dataclasses: pickles that contain only fields, and values computed on demand."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 _Owner = TypeVar("_Owner")
 _Value = TypeVar("_Value")
-UNREAD = "_unread"  # key, in the values for `trusted`, of a function that returns all late fields
+UNREAD = "_unread"  # key in an object's `__dict__` of a function that returns its late fields
 _new, _set = object.__new__, object.__setattr__  # looked up once, for speed
 
 
 class cached_property(Generic[_Value]):
     """A property that is computed on first access and then stored in the object's `__dict__`.
 
-    Up to Python 3.11, `functools.cached_property` has a single lock for all objects: threads wait
-    for each other, and a process forked while the lock is held hangs forever. This class has no
-    lock. Two threads may compute the same value; both get the one that was stored first.
+    Up to Python 3.11, `functools.cached_property` has one lock for all objects of a class: threads
+    wait for each other, and a process forked while the lock is held hangs forever. This class has
+    no lock. Two threads may compute the same value; both get the one that was stored first.
     """
 
     def __init__(self, compute: Callable[[Any], _Value]) -> None:
@@ -37,13 +37,13 @@ class cached_property(Generic[_Value]):
 
 
 class _late_field(cached_property[Any]):
-    """A field obtained on first access: from the object's `UNREAD` function, or by computation."""
+    """A field set on first access: by the object's `UNREAD` function, or by computation."""
 
     def __get__(self, instance: object | None, owner: type) -> Any:
         known = {} if instance is None else instance.__dict__
         if read := known.get(UNREAD):
             for name, value in read().items():
-                known.setdefault(name, value)  # of several threads, the first one sets the value
+                known.setdefault(name, value)  # the first of several threads sets the value
             known.pop(UNREAD, None)
         return known[self._name] if self._name in known else super().__get__(instance, owner)
 
@@ -73,10 +73,9 @@ def trusted(kind: type[_Owner], values: dict[str, Any]) -> _Owner:
 
 
 def find_late(of: type[_Owner], **finds: Callable[[_Owner], Any]) -> None:
-    """Give a class the functions that compute, on first access, fields that `trusted` leaves out.
+    """Let a class compute, on first access, fields that are missing from `trusted` values.
 
-    Call this after the class is defined: `dataclass` would take descriptors in its body for
-    default values.
+    Call this after the class is defined: `dataclass` would use descriptors in its body as defaults.
     """
     for name, find in finds.items():
         descriptor = _late_field(find)

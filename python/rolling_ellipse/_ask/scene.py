@@ -212,7 +212,7 @@ class Scene(FieldsOnly, Listed):
         """Check the arguments, and store them as the fields of this scene."""
         blow = None if given["impulse"] is None else one_blow("impulse", given["impulse"])
         core = _core.scene_of(given, blow, reached)  # rejects numbers out of range
-        if core is None:  # some numbers are of types other than float
+        if core is None:  # some numbers are not floats
             for name, value in given.items():
                 if name in SCENE_UNITS and (value is not None or name not in OPTIONAL):
                     given[name] = number(name, value)
@@ -267,10 +267,10 @@ class Scene(FieldsOnly, Listed):
         Raises
         ------
         ValueError
-            If a key is unknown, missing or repeated, the version differs, or a value is not a
-            number or out of its range; the message starts with the key.
+            If a key is unknown, missing or repeated, the version is not 1, or a value is not a
+            number or is out of its range; the message starts with the key.
         TypeError
-            If the source is of another type, or a required number is null.
+            If the source has another type, or a required number is null.
 
         Warns
         -----

@@ -20,7 +20,7 @@ METHODS: tuple[Method, ...] = get_args(Method)
 GIVEN: Any = "arrays"  # the method of a trajectory from arrays; it cannot be requested
 Blows = tuple[tuple[float, Impulse], ...]
 Stop = str | _core.EventKind | Iterable[str | _core.EventKind] | None
-DECIDED = "decided"  # a stop once the outcome is decided, rather than at a kind of event
+DECIDED = "decided"  # value of `stop` for a motion that stops once its outcome is decided
 _KINDS = (*_core.EventKind.__members__, DECIDED)
 STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 
@@ -74,7 +74,7 @@ class Settings(FieldsOnly):
 
 
 def settings(*given: Any) -> Settings:
-    """Return the Settings for values in field order; the same values are checked only once."""
+    """Return the Settings for values in field order; repeated values are not checked again."""
     for known, made in (_last[0], _BY_DEFAULT):
         if _core.hold_the_same(given, known):
             return made
@@ -143,7 +143,7 @@ def _whole(name: str, value: Any) -> int:
     return count
 
 
-_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # by the type of the field to be checked
+_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # by the annotation of the field
     "Model": partial(choice, valid=MODELS),
     "Method": partial(choice, valid=METHODS),
     "Stabilization": partial(choice, valid=STABILIZATIONS),

@@ -17,8 +17,8 @@ _Given = dict[str, Any]
 _VERSION = 1
 _NAMES, _BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
 LINKS = ("#", "http:", "https:", "file:")
-_BESIDE = ("t", "blows", "lang")  # other keys of a link: end and blows of the motion, language
-_OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # names in older links, and in Scene
+_BESIDE = ("t", "blows", "lang")  # other keys of a link: duration and blows of the motion, language
+_OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # names in old links, and those in Scene
 
 
 def to_json(scene: Any) -> str:
@@ -139,7 +139,7 @@ def _of_link(link: str) -> _Given:
 
 
 def _of_older(given: _Given) -> _Given:
-    """Return the arguments of Scene for the numbers of an older link, like the page's `sceneOf`."""
+    """Convert the numbers of an older link to arguments of Scene, like the page's `sceneOf`."""
     k, height, slip = (given.pop(name) for name in _OLDER)
     a, b = given["a"], given["b"]
     ground = evaluate(_core.support, theta=finite("theta", given["theta"]), a=a, b=b)
@@ -177,7 +177,7 @@ def _number(name: str, value: Any) -> Any:
 
 
 def _linked(name: str, text: str) -> Any:
-    """Return the number that a text in a link stands for."""
+    """Return the number written in a link."""
     value: Any = text
     with suppress(ValueError):
         value = float(text)

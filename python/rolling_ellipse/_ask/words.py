@@ -29,7 +29,7 @@ def written(value: float, words: Mapping[str, str], digits: int = 4) -> str:
 
 
 def joined(words: Mapping[str, str], sentences: Sequence[Sentence], digits: int) -> str:
-    """Return sentences, given by their keys and values, as one text."""
+    """Return the sentences with these keys and values as one text."""
     return " ".join(filled(words, key, digits, **dict(numbers)) for key, numbers in sentences)
 
 

@@ -12,7 +12,7 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
 
     An ellipsoid with semi-axes a, max(a, b), b along x, y, z is kept in its plane by two slide
     joints ``x``, ``z`` and a hinge ``theta``. z points away from the ground, theta is positive
-    clockwise, and gravity is tilted by the slope. The key frame ``start`` is the `initial_state`.
+    clockwise, and gravity is tilted by the slope. The keyframe ``start`` is the `initial_state`.
     MJCF has no coefficient of restitution: a contact is a critically damped spring, or an undamped
     one for restitution 1. Rolling resistance becomes MuJoCo's rolling friction, which has the same
     effect while the body rolls. In a sliding contact, slip and rotation share one friction cone.
@@ -22,9 +22,9 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
     timestep : float
         Time step [s].
     contact_steps : float or None
-        Time constant of the contact in steps, with elliptic friction cones and an impedance of
-        0.9999; MuJoCo requires at least 2. None: MuJoCo's default contact, with a time
-        constant of 0.02 s.
+        Time constant of the contact in time steps; MuJoCo requires at least 2. The contact then has
+        elliptic friction cones and an impedance of 0.9999. None: MuJoCo's default contact, with a
+        time constant of 0.02 s.
 
     Raises
     ------
@@ -57,8 +57,8 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
 def to_sdf(scene: Any) -> str:
     """Return the scene as SDF, the format of Gazebo, also read by Drake.
 
-    The body of `to_mjcf` has prismatic joints ``x``, ``z`` and a revolute joint ``theta``, all of
-    which are 0 at the start. The two links between the joints have 1e-9 of the body's mass. SDF
+    The ellipsoid of `to_mjcf` has prismatic joints ``x``, ``z`` and a revolute joint ``theta``, all
+    of which are 0 at the start. The two links between the joints have 1e-9 of the body's mass. SDF
     cannot describe velocities: set those of the joints to x_dot, z_dot, omega of `initial_state`.
     URDF has no ellipsoids.
 

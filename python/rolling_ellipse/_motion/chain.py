@@ -1,11 +1,10 @@
 """Derivatives of a motion with many events, computed part by part with the chain rule.
 
-A part has a few events. It starts in the middle of an arc, in the state of the motion at that time.
-Let M be the derivatives of the state at the end of the part with respect to its start, and P those
-with respect to the parameters of the body. If S are the derivatives of the state at the start,
-those at the end are M S + P. Only the neighbours of a single part need to have the same events.
-Hence derivatives exist up to a growth of 1e13, even if all neighbours of the whole motion have
-other events.
+A part has a few events and starts in the middle of an arc, in the state of the motion at that time.
+Let M be the derivatives of its final state with respect to its initial state, and P those with
+respect to the parameters of the body. If S are the derivatives of the initial state, those of the
+final state are M S + P. A small change at the start of a part must not alter the events of that
+part, but may alter those of later parts. Hence derivatives exist up to a growth of 1e13.
 """
 
 from __future__ import annotations
@@ -26,8 +25,8 @@ from .samples import FREE, Pair
 from .trajectory import Trajectory
 
 EVENTS = 3  # number of events per part
-# Duration of the shortest flight that is cut, in units of sqrt(L/g). Such a flight rises to L/1000,
-# a hundred times the steps that give differences with ten digits. A lower hop needs smaller steps.
+# Shortest flight in which a part may end, in units of sqrt(L/g). It rises to L/1000, a hundred
+# times the steps that give differences with ten digits. A lower hop would need smaller steps.
 _HOP = 0.1
 # Bound on the relative difference between the derivatives along the computed arcs and the exact
 # ones, in roundings times the growth of the motion. The largest difference in 120 motions with a
@@ -36,10 +35,10 @@ _ROUNDINGS = 64
 
 
 class Chained(NamedTuple):
-    """Vectors like those of `neighbours`, for k inputs, and their errors.
+    """Derivatives with respect to k inputs, arranged as in `neighbours`, and their errors.
 
-    `error` is the error of the derivatives along the computed arcs; `parted` estimates how far the
-    latter are from the derivatives of the exact motion.
+    `error` is the error of the derivatives along the computed arcs; `parted` estimates how far
+    these are from the derivatives of the exact motion.
     """
 
     value: FloatArray  # (6, n + m, k)
@@ -48,7 +47,7 @@ class Chained(NamedTuple):
 
 
 class Part(NamedTuple):
-    motion: Trajectory  # sampled like the whole motion, and at the start of the next part
+    motion: Trajectory  # sampled like the whole motion, and at its own end
     rows: FloatArray  # indices of the part's samples and events in the whole motion
     end: float  # time at which the part ends in the whole motion
 
@@ -60,8 +59,8 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
     start = np.zeros((len(STATE), len(names)))
     scales = [size_of(motion.scene, name) for name in names]
     growth = 1.0  # largest growth of a change of an input, or of the state after the first part
-    # For each earlier part: the derivatives of the current state with respect to the state at the
-    # end of that part, and the errors made in it
+    # For each earlier part: the derivatives of the current state with respect to the final state
+    # of that part, and the errors made in it
     since: list[tuple[FloatArray, FloatArray]] = []
     for index, (part, own, _) in enumerate(parts_of(motion, EVENTS)):
         last = len(part.t) - 1
@@ -88,17 +87,16 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
 
 
 def free_of(scene: Scene) -> tuple[str, ...]:
-    """Return the coordinates of the start of a scene that its contact does not determine."""
+    """Return the initial coordinates of a scene that its contact does not determine."""
     mode = (scene if scene.impulse is None else scene.replace(impulse=None)).initial_state.mode
     in_air = scene.z is not None
     return tuple(name for name in FREE[mode] if in_air or getattr(scene, name) is not None)
 
 
 def by_state(part: Trajectory, free: Iterable[str]) -> Pair:
-    """Return derivatives with respect to the start, (6, r, 6), and errors, (r, 6).
+    """Return derivatives with respect to the initial state, (6, r, 6), and errors, (r, 6).
 
-    Entries are 0 for coordinates that are not in `free`.
-    Both the states and the start are in natural units.
+    Entries are 0 for coordinates that are not in `free`. All states are in natural units.
     """
     # The shape of an arc does not depend on x
     names = [name if name in free and name != "x" else None for name in STATE]
@@ -109,9 +107,9 @@ def by_state(part: Trajectory, free: Iterable[str]) -> Pair:
 
 
 def _derivatives(part: Trajectory, names: list[str | None], side: int) -> Pair:
-    """Return derivatives with respect to k inputs, (6, r, k), and errors, (r, k); 0 for None.
+    """Return derivatives with respect to k inputs, (6, r, k), and errors, (r, k).
 
-    A ValueError gives the reason if a derivative does not exist.
+    Both are 0 for an input of None. A ValueError gives the reason if a derivative does not exist.
     """
     rows = len(part.t) + len(part.events)
     value, error = np.zeros((len(STATE), rows, len(names))), np.zeros((rows, len(names)))

@@ -1,4 +1,4 @@
-"""The report's coordinates q = (x, z, theta, psi, r), their constraints, and errors of a motion.
+"""The report's coordinates q = (x, z, theta, psi, r), and constraint and energy errors of motions.
 
 The errors are dimensionless, so that rounding errors are about 1e-16 for every body.
 """
@@ -56,7 +56,7 @@ class ConstraintResiduals:
 
 
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
-    """Return the residuals of the four constraints for any state, and its gap and slip.
+    """Return the residuals of the four constraints, the gap and the slip of any state.
 
     Gap and slip are computed independently of the constraints, which are
 
@@ -166,10 +166,10 @@ def may_lose_energy(motion: Trajectory) -> bool:
 def losses(motion: Trajectory) -> dict[str, FloatArray]:
     """Return the energy lost up to each sample in rolling, in slides and in impacts [J], (n,) each.
 
-    The motion must have a sample at every event. Then energy that is lost between a sample in
-    flight and the next sample is lost in an impact. The work of a blow is not a loss. If rolling
-    resistance and friction dissipate energy at the same time, the work of rolling resistance is
-    computed from its couple with the trapezoidal rule between samples.
+    The motion must have a sample at every event: any energy lost between a sample in flight and the
+    next sample is then lost in an impact. The work of a blow is not a loss. If rolling resistance
+    and friction dissipate energy at the same time, the work of rolling resistance is computed from
+    its couple with the trapezoidal rule between samples.
     """
     t, mode, last = motion.t, motion.mode, np.roll(motion.mode, 1)
     lost = -np.diff(motion.energy, prepend=motion.energy[:1])
@@ -189,10 +189,10 @@ def losses(motion: Trajectory) -> dict[str, FloatArray]:
 def energy_error(motion: Trajectory) -> FloatArray:
     """Return |E - E0| over the largest kinetic + |potential| energy, (n,).
 
-    E0 is the energy of the first sample. Losses in impacts and by friction are not errors: after an
-    event that may change the energy, E0 is the energy of the next sample. In a slide with friction,
-    or on the ground with rolling resistance, the error is NaN. Heights are measured from the ground
-    at the first sample, so that the origin of x does not matter.
+    E0 is the energy of the first sample or, in a motion that may lose energy, of the first sample
+    after the latest event, because losses are not errors. In a slide with friction, or on the
+    ground with rolling resistance, the error is NaN. Heights are measured from the ground at the
+    first sample, so that the origin of x does not matter.
     """
     scene = motion.scene
     along = motion.x - motion.x[0]

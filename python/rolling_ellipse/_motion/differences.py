@@ -1,4 +1,7 @@
-"""Derivatives of a motion: differences between neighbouring motions, for the best of many steps."""
+"""Derivatives of a motion as finite differences, with the best of many step sizes.
+
+Neighbours are the motions for slightly different values of one input.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ _GROWN = 8.0  # trials end when the error exceeds the smallest one by this facto
 _UNITS = 8  # error bound [ulp] of states and times that the package guarantees
 
 _LEAST_LEVER = 1e-200  # [m]; replaces a rolling resistance of 0
-_END = "no event"  # name of the end of a motion, for messages
+_END = "no event"  # how messages describe the end of a motion
 
 # For each side: offsets in steps, and weights of sixth order (Fornberg, see `sensitivity`)
 _FORWARD = np.arange(7.0), np.array([-147, 360, -450, 400, -225, 72, -10]) / 60
@@ -40,8 +43,8 @@ def differenced(
 ) -> tuple[FloatArray, FloatArray]:
     """Return derivatives from values at the nodes of a rule (first axis), and rounding errors.
 
-    `moved` contains the actual changes of the input, since neighbours are at the nearest doubles. A
-    value may be wrong by `_UNITS` roundings of itself and of an input of magnitude `scale`.
+    `moved` contains the changes of the input as rounded to doubles. A value may be wrong by
+    `_UNITS` roundings of itself and of an input of magnitude `scale`.
     """
     weights = RULES[side][1].tolist()
     # The order of summation is the same for one vector and for many
@@ -60,11 +63,10 @@ def size(values: FloatArray) -> FloatArray:
 
 
 class Best:
-    """The best of the derivatives from successively smaller steps, for each vector.
+    """For each vector, the best of the derivatives computed with smaller and smaller steps.
 
-    The error is the rounding error plus the distance to the result of the previous or the next
-    step, whichever is larger. For large steps this is the previous one, for small steps the next
-    one. The trials of each vector end independently, when its error has grown.
+    The error is the rounding error plus the larger of the distances to the results of the previous
+    and the next step. The trials of each vector end independently, when its error has grown.
 
     Attributes
     ----------
@@ -122,7 +124,7 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
 
 
 def _with_turns(motion: Trajectory) -> Trajectory:
-    """Return the motion with a negligible rolling resistance, so that its turns are computed."""
+    """Return the motion with a negligible rolling resistance, which makes the core list turns."""
     resisted = motion.scene.replace(rolling_resistance=_LEAST_LEVER)
     settings = dataclasses.replace(settings_of(motion), model="contact", method="auto")
     turning = Trajectory.computed(resisted, settings, motion.t)
@@ -143,7 +145,7 @@ def error_of_method(motion: Trajectory, name: str, side: int, best: Best) -> Flo
 
 
 def settings_of(motion: Trajectory) -> Settings:
-    """Return the settings of a motion without its stop, and with its actual model for "auto"."""
+    """Return the settings of a motion, with its actual model and without its stop."""
     return dataclasses.replace(motion.settings, model=motion.model, stop=(), count=1)
 
 
@@ -152,7 +154,7 @@ def _differences(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the derivatives of `neighbours` from a single step, and their rounding errors.
 
-    Neighbours are compared at equal fractions of the arcs between events and turns.
+    Neighbours are compared at equal fractions of the arcs between events and turns (`joints_of`).
     """
     value = value_of(motion.scene, name)
     changes = [value + place * step - value for place in RULES[side][0].tolist()]
@@ -183,7 +185,7 @@ def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> Float
 
 
 def moved(motion: Trajectory, settings: Settings, changes: dict[str, float]) -> Trajectory:
-    """Return the motion for changed inputs by the same model; ValueError if its events differ."""
+    """Return the motion for changed inputs, by the same model; reject one with other events."""
     values = {name: value_of(motion.scene, name) + change for name, change in changes.items()}
     other = Trajectory.computed(changed(motion.scene, values), settings, np.array([motion.span]))
     if difference := unlike(motion, other):
@@ -204,7 +206,7 @@ def unlike(motion: Trajectory, other: Trajectory) -> str:
 
 
 def _order(motion: Trajectory) -> list[tuple[str, float]]:
-    """Return descriptions and times of what neighbours must share: start, events, turns and end."""
+    """Return names and times of the start, events, turns and end, which neighbours must share."""
     known = zip(kinds_of(motion.events), knots_of(motion)[1:-1].tolist(), strict=True)
     turns = (("a turn", t) for t in motion._solution.turns.tolist())
     events = sorted([*known, *turns], key=itemgetter(1))
@@ -225,7 +227,7 @@ def knots_of(motion: Trajectory) -> FloatArray:
 
 
 def joints_of(motion: Trajectory) -> FloatArray:
-    """Return `knots_of` and the turns, at which rolling resistance makes omega_dot jump."""
+    """Return `knots_of` and the turns, the times at which the couple of resistance changes."""
     return np.sort(np.concatenate([knots_of(motion), motion._solution.turns]))
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-# Fields that are read only from the state after an event
+# Fields that are taken only from the state after an event
 _EFFECTS = "reaction_x", "reaction_z", "energy_lost"
 _CODES = {"kind": EventKind, "mode_before": Mode, "mode_after": Mode}
 
@@ -134,7 +134,7 @@ def _unit(column: str) -> str:
 
 
 def columns_of(rows: FloatArray, body: Any) -> dict[str, Any]:
-    """Return the columns of a table from rows of the core, for one body or a body for each row."""
+    """Return the columns of a table for rows from the core; `body` may have an entry per row."""
     columns: dict[str, Any] = dict(zip(_core.COLUMNS["events"], rows.T.copy(), strict=True))
     with np.errstate(all="ignore"):
         for when in ("before", "after"):
@@ -149,7 +149,7 @@ def columns_of(rows: FloatArray, body: Any) -> dict[str, Any]:
 
 
 def with_effects(rows: FloatArray, body: Any) -> FloatArray:
-    """Add the effects of impacts to rows of an older version, which has no blows."""
+    """Add the effects of impacts to rows of an older schema, which has no blows."""
     columns = dict(zip(_core.COLUMNS["events"], rows.T, strict=False))
     mass, inertia, *_ = body
 

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 _Made = TypeVar("_Made", bound="Trajectory")
 _NEAR = 5  # number of samples of a local polynomial
-_PIECE = 2**12  # times evaluated together, in at most 20 ms; Ctrl-C acts between pieces
-_SMALL = 0.01  # largest gap over max(a, b), and slip over sqrt(g max(a, b)), in rolling
+_PIECE = 2**12  # times evaluated at once (at most 20 ms); Ctrl-C acts between pieces
+_SMALL = 0.01  # largest gap/max(a, b) and slip/sqrt(g max(a, b)) in rolling
 
 
 def from_arrays(
@@ -37,7 +37,7 @@ def from_arrays(
     *,
     scene: Scene,
 ) -> _Made:
-    """Return a trajectory made of external samples, from a tracker or another simulator.
+    """Return a trajectory of external samples, such as those of a tracker or another simulator.
 
     Each track is interpolated by the fourth-degree polynomial through the five samples around the
     nearest one. Rates have errors of fourth order, and accelerations, which give the forces, of

@@ -20,7 +20,7 @@ from .sensitivity import require_its_own, without_derivative
 from .trajectory import Trajectory
 
 COORDINATES = ("theta", "omega", "x", "x_dot", "z", "z_dot")
-# Growth after which a rounding of the start, 2^-53, has become 1e-3 of the body
+# Growth by which one rounding at the start, 2^-53, becomes 1e-3 of the size of the body
 _KNOWN = 1e-3 * 2.0**53
 # Events after which all changes of the state persist; other events may remove some of them
 _KEEPING = {EventKind.SLIP, EventKind.REVERSE, EventKind.LIFT_OFF}
@@ -37,10 +37,10 @@ class Growth(FieldsOnly):
     t : ndarray, shape (m,)
         Times [s]: one in the middle of the arc after each event, and the end.
     log : ndarray, shape (m, k)
-        Sums of ``log |R_ii|`` up to these times. The first column is the logarithm of the growth of
-        a change of the first coordinate. The sum of the first two columns is that of the area
-        spanned by changes of the first two coordinates, and so on for volumes. An entry is -inf
-        once an event has made its change dependent on those of the previous columns: where a
+        Sums of ``log |R_ii|`` up to these times (see `growth`). The first column is the logarithm
+        of the growth of a change of the first coordinate. The sum of the first two columns is that
+        of the area spanned by changes of the first two coordinates, and so on for volumes. An entry
+        is -inf once an event has made its change dependent on those of the previous columns: when a
         contact starts without a rebound, or its slip ends.
     message : str
         The reason if `t` ends before the motion does, otherwise "".
@@ -160,11 +160,11 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
 def _stretched(part: Trajectory, basis: FloatArray, free: tuple[str, ...]) -> Pair:
     """Map orthonormal columns through a part; return Q and R of the result.
 
-    A column whose change is lost is 0 in Q and R from then on. A ValueError gives the reason if the
+    A column is 0 in Q and R once its change is lost. A ValueError gives the reason if the
     derivatives are too inaccurate.
     """
     value, errors = (each[..., len(part.t) - 1, :] for each in by_state(part, free))
-    error = math.sqrt(len(STATE)) * float(errors.sum())  # of any unit vector's image
+    error = math.sqrt(len(STATE)) * float(errors.sum())  # bound for the image of a unit vector
     if not error < WORST * max(1.0, size(value).max()):
         raise ValueError(f"steps agree only to {error:.1g}")
     columns, made, r = value @ basis, np.zeros_like(basis), np.zeros((basis.shape[1],) * 2)

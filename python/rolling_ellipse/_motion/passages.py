@@ -47,7 +47,7 @@ def when(
     """Return all times in [0, t_end] at which the motion passes a value.
 
     The times are accurate to a few ulp and do not depend on the motion's samples. A
-    `CompletenessWarning` is issued if some may be missed, as is possible for every `function`.
+    `CompletenessWarning` is issued if some may be missed, and for every `function`.
 
     Parameters
     ----------
@@ -57,8 +57,8 @@ def when(
     function : callable, optional
         Takes a Trajectory and returns one number for each sample; `when` returns its zeros.
     event : EventKind or str, optional
-        Kind of events, or its name in any case. ``"roll_over"`` is the passage of a position with
-        the long axis (for a circle: the axis a) perpendicular to the ground.
+        Kind of events, or its name in upper or lower case; or ``"roll_over"``, when the long axis
+        (for a circle: the axis a) becomes perpendicular to the ground.
     direction : {0, 1, -1}
         1: only where the quantity rises through the value; -1: only where it falls; 0: both, and
         also where it only touches the value.
@@ -78,13 +78,13 @@ def when(
     Notes
     -----
     No time is missed if the turning points of the quantity are known. They are located with
-    Bernstein coefficients of polynomials of degree 8 that agree with the quantity to 1000 ulp. A
-    `CompletenessWarning` is issued if no polynomial agrees to that accuracy, and for a `function`,
-    whose values are known only at single times.
+    Bernstein coefficients of polynomials of degree 8 that match the quantity to 1000 ulp. A
+    `CompletenessWarning` is issued if no polynomial matches it that closely, and for a `function`,
+    which can only be evaluated at single times.
 
     If omega jumps across the value at an event, the time of the event counts. A value that is only
-    touched, as at a turning point, counts once, even at the start or end. A value that is held for
-    a while counts when it is reached. Touching is resolved to 8 ulp of the quantity.
+    touched, as at a turning point, counts once, even at the start or end. A value that lasts for a
+    while counts when it is reached. Touching is resolved to 8 ulp of the quantity.
 
     Examples
     --------
@@ -138,7 +138,7 @@ def when(
 
 
 def _ask_for_radians(motion: Trajectory, values: FloatArray) -> None:
-    """Warn if angles are never reached as radians, but would be reached as degrees."""
+    """Warn if no angle is reached in radians, but one would be reached in degrees."""
     degrees = values[(values != 0) & (values % 15 == 0)]
     times, _ = motion._solution.passages(Quantity.theta, np.radians(degrees), 0)
     if any(each.size for each in times):
@@ -150,10 +150,7 @@ def _ask_for_radians(motion: Trajectory, values: FloatArray) -> None:
 
 
 def _tips(motion: Trajectory) -> FloatArray:
-    """Return the angles of the tip positions within the range of theta.
-
-    theta is monotonic between its turning points.
-    """
+    """Return the angles in the range of theta at which the body stands on its tip."""
     turning = motion._solution.passages(Quantity.omega, np.zeros(1), 0)[0][0]
     theta = motion.sol([0.0, *turning, motion.t_end]).theta
     tip = math.pi / 2 if motion.scene.a >= motion.scene.b else 0.0

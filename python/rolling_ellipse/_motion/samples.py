@@ -43,7 +43,7 @@ FREE: dict[Mode, tuple[str, ...]] = {
     Mode.ROLLING: _ON_GROUND, Mode.REST: _ON_GROUND, Mode.SLIDING: (*_ON_GROUND, "x_dot"),
     Mode.FLIGHT: (*_ON_GROUND, "z", "x_dot", "z_dot"),
 }  # fmt: skip
-_OF_COORDINATES = 3  # number of arrays of the multiplier model's samples
+_OF_COORDINATES = 3  # number of arrays in the samples of the multiplier model
 
 
 def frozen(values: _Values) -> _Values:

@@ -187,13 +187,12 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     Notes
     -----
     The motion is solved again for six or seven values of each input, and differences of sixth order
-    [1]_ are computed. The time between two events is stretched to its length in the motion, so that
-    states of the same arc are compared; the change of the motion during this shift is subtracted.
-    There are up to 23 steps, each half the previous one. Each state uses the step with the smallest
-    error, which is the rounding error plus the distance to the results of the steps before and
-    after it. If this is not accurate enough for a motion of many events, parts of three events are
-    differentiated with respect to the states at their starts, and combined with the chain rule
-    along the computed arcs.
+    [1]_ are computed. States are compared at the same fraction of the same arc between two events,
+    and the change of the motion due to this shift of time is subtracted. There are up to 23 steps,
+    each half the previous one. Each state uses the step with the smallest error, which is the
+    rounding error plus the distance to the results of the steps before and after it. If this is not
+    accurate enough for a motion with many events, parts with three events are differentiated with
+    respect to their initial states and combined with the chain rule.
 
     References
     ----------
@@ -242,13 +241,13 @@ def _derivatives(
     """Return derivatives for k inputs, (6, n + m, k), and their errors, (n + m, k).
 
     The arrays are arranged as in `neighbours`, with a last axis for the inputs. Whether the motion
-    is split into parts depends on its events and its end, but not on its samples.
+    is split into parts depends on the errors at its events and its end, not on its samples.
     """
     n = len(motion.t)
-    ends = slice(n, n + 1), slice(n + 1, None)  # rows of the end and of the events
+    ends = slice(n, n + 1), slice(n + 1, None)  # indices of t_end and of the events
     whole = motion.sol(np.append(motion.t, motion.t_end))
     value = np.zeros((len(STATE), n + 1 + len(motion.events), len(names)))
-    error, others = np.zeros((2, *value.shape[1:]))  # errors of the differences, and of the motion
+    error, others = np.zeros((2, *value.shape[1:]))  # error of the differences; error of the motion
     problems: list[ValueError | None] = [None] * len(names)
     for k, name in enumerate(names):
         if name == "t":

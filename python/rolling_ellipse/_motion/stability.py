@@ -13,21 +13,20 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 _LOST_ENERGY = 1e-2  # largest accepted relative change of the energy
-# Largest accepted constraint error relative to the long semi-axis: one pixel in a picture
+# Largest accepted constraint error relative to the long semi-axis: about a pixel in a picture
 _MISSED = 1e-3
 _MOVED = 0.1  # largest accepted constraint error of a step before projection [long semi-axes]
-_OF_RTOL = 10.0  # accepted relative change of the energy under error control, in units of rtol
+_OF_RTOL = 10.0  # largest accepted relative change of the energy under error control [rtol]
 
 
 def advice(motion: Trajectory) -> str | None:
     """Return a sentence of advice if a motion has lost energy or left its constraints, or None.
 
-    Both errors are measured at the steps and between them. Rolling conserves energy; its change is
-    divided by the largest kinetic plus |potential| energy, with x = 0 at the start. A projection
-    enforces constraints and energy for any step size, but it hides the local error. The distance by
-    which it moves a state reveals this error, because the constraint error of a step is part of its
-    local error and of the same order. If that distance exceeds a tenth of the long semi-axis, the
-    projected state belongs to another motion.
+    The energy and the constraint errors are checked at the steps and between them. Rolling
+    conserves energy; its change is divided by the largest kinetic plus |potential| energy, with
+    x = 0 at the start. A projection enforces the constraints for any step size and so hides the
+    local error, but the constraint error before the projection is of the same order. If this error
+    exceeds a tenth of the long semi-axis, the projected state belongs to another motion.
     """
     losses = motion._solution.losses()
     if losses is None:

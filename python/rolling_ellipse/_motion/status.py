@@ -43,7 +43,7 @@ class Status(enum.Enum):
 
 
 COMPLETED = Status.COMPLETED  # a module variable, since access through the class is 5 times slower
-_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two possible motions
+_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions are possible
 # The Status for each code of the core's endings
 STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}
 

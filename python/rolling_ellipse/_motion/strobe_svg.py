@@ -28,7 +28,7 @@ _TURNING = 4 * math.pi  # largest rotation in the picture, summed over both sens
 
 
 def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
-    """Return the picture, with gravity downwards; "" for a motion without samples.
+    """Return the picture, with gravity downwards, or "" if the motion cannot be drawn.
 
     Points are complex numbers x - iz relative to the ground point below the first centre. On the
     screen i points down, and clockwise rotation is positive. The unit is the long semi-axis, so
@@ -74,7 +74,7 @@ def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
 
 
 def _shown_until(trajectory: Trajectory) -> float:
-    """Return the time [s] at which the picture ends: by `_REACH`, `_TURNING` or the last sample."""
+    """Return the time [s] when the motion exceeds `_REACH` or `_TURNING`, or else its last time."""
     t, x, z, theta = (getattr(trajectory, name) for name in ("t", "x", "z", "theta"))
     reach = _REACH * max(trajectory.scene.a, trajectory.scene.b)
     away = np.maximum(np.abs(x - x[0]), np.abs(z - z[0])) / reach

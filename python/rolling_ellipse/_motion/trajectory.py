@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 # Attributes for files, pickles and `sol`, which `dir` omits
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 _Number = TypeVar("_Number", bound=np.generic)
-# Reasons that are omitted because `initial_state` gives them; only the first can be one of these
+# Reasons that are omitted because `initial_state` gives them; only the first reason can be one
 _NOT_NEW = ("no_blow", "sticks", "in_the_air")
 
 
@@ -205,7 +205,7 @@ class Trajectory(FieldsOnly):
         _require_counts(self.stats)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Make the arrays read-only again, since pickles and deep copies leave them writeable."""
+        """Make the arrays read-only again, since pickling and deep copying make them writeable."""
         self.__dict__.update(state)
         for group in self._arrays():
             for values in group:
@@ -218,8 +218,8 @@ class Trajectory(FieldsOnly):
         """Solve a scene up to the last of the times, and sample it at all times reached.
 
         A start (q, q_dot) off the constraints replaces the start of the scene. For a motion with a
-        stop, `times` may be a 0-d array, the latest end; the samples are then evenly spaced up to
-        the actual end.
+        stop, `times` may be a 0-d array with the latest end; the samples are then evenly spaced up
+        to the actual end.
         """
         until = times if times.ndim else times.reshape(1)
         solution, samples = _core.simulate(scene.core, settings.core, until, start)
@@ -488,7 +488,7 @@ def _require_counts(stats: Any) -> None:
 
 
 def _reason(self: Trajectory) -> str:
-    """What happens in the motion, then what is proved about its rolling."""
+    """What happens in the motion, followed by what is proved about rolling."""
     if self.start is not None:
         return in_words([("off_constraints", [])])
     _, headline, reasons = _core.describe(self.scene.core, self._solution)

@@ -1,4 +1,4 @@
-"""The outcome of rolling, for one body or a million, and the thresholds between outcomes."""
+"""The outcome of rolling, for one body or many, and the thresholds between outcomes."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Thresholds(FieldsOnly, Listed):
         Above this speed rolling would require the ground to pull (N < 0), first at this angle.
     slip_speed, slip_angle : float
         The least speed at which rolling requires more than the given friction, first at this angle.
-        It is the start of the first of `slip_windows`; the contact may hold again at larger speeds.
+        The first of `slip_windows` starts at this speed; faster rolling may be possible again.
     slip_windows : tuple of (float, float)
         Ranges of speed, ascending, in which rolling requires more than the given friction somewhere
         along its path. There are one or two, the last of which ends at inf; a circle with friction
@@ -52,8 +52,8 @@ class Thresholds(FieldsOnly, Listed):
         passes the tip; inf ends an unbounded range. There are none for infinite friction, nor for
         friction up to `painleve_friction`. Otherwise the ranges are located by a scan in steps of
         2 % up to 50 times the largest of the other speeds, which may miss narrower ranges. Their
-        ends are refined by bisection. These ends are accurate to only about 1e-5 where slides
-        approach the point at which c and B of the normal force N = c/B vanish together.
+        ends are refined by bisection, but are only accurate to about 1e-5 where slides approach the
+        point at which c and B of the normal force N = c/B vanish together.
     friction_to_roll_over : float
         Largest ``|F/N|`` of rolling at the roll-over speed (infinite if N vanishes before the tip).
     painleve_friction, painleve_angle : float
@@ -176,9 +176,9 @@ def classify(
     ``EDGE``            undecided because of rounding, for example on the separatrix
     ==================  ==========================================================================
 
-    Hence the outcome of a body that starts beyond the angles at which it would slip is that it
-    rolls over, even if it slips later; `certify` covers the whole motion. The outcomes follow from
-    proved signs of the polynomials of N and ``friction N - |F|`` for the heights that the motion
+    Hence the outcome of a body that starts beyond the angles at which it would slip is
+    ``ROLLS_OVER``, even if it slips later; `certify` covers the whole motion. The outcomes follow
+    from the signs of the polynomials of N and ``friction N - |F|`` for the heights that the motion
     reaches. The signs are proved with Bernstein coefficients and subdivision, and each coefficient
     has a margin for rounding.
 

@@ -58,7 +58,7 @@ class Fit:
     message : str
         Number of data, with chi2 over the degrees of freedom or the estimated deviations; the
         parameters that the film does not determine; and a note if the scene does not fit the film,
-        with any other reading of the film that does fit.
+        with a conversion of the data, if there is one, that makes it fit.
 
     Examples
     --------

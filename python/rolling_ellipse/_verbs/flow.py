@@ -35,10 +35,10 @@ def flow(
 ) -> tuple[Any, Any, Any]:
     """Return the exact state of rolling at any time, without checking that rolling is valid.
 
-    All arguments broadcast by NumPy's rules. The cost of one time does not depend on its distance
-    from the start. Multiples of the period are subtracted in double-double arithmetic; the period
-    is computed with the trapezoidal rule in a coordinate in which the integrand has no peaks. The
-    energy integral is inverted with Gauss-Legendre quadrature and Newton's method, without steps.
+    All arguments broadcast. The cost of one time does not depend on its distance from the start.
+    Multiples of the period are subtracted in double-double arithmetic; the period is computed with
+    the trapezoidal rule in a coordinate in which the integrand has no peaks. The energy integral is
+    inverted with Gauss-Legendre quadrature and Newton's method, without steps.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def rolling_equation(scene: Scene) -> Callable[[float, Any], FloatArray]:
     """Return the right-hand side of the equation of rolling without slip, for any integrator.
 
     ``solve_ivp(rolling_equation(scene), (0.0, 6.0), [start.theta, start.omega])`` is the motion
-    from ``start = scene.initial_state``. It is not checked whether the contact can be maintained.
+    from ``start = scene.initial_state``. Whether the contact can be maintained is not checked.
 
     Parameters
     ----------

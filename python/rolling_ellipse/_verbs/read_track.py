@@ -39,7 +39,7 @@ def read_track(
         Names of the columns of the time [s], of the position of the centre (to the right and up)
         and of the angle of the semi-axis a. Without `t`, the rows are consecutive frames of a film
         with `fps` frames per second.
-    points : four of str, optional
+    points : iterable of four str, optional
         Names of columns that replace `x`, `z` and `theta`: x and z of a first point, then x and z
         of a second point. Both points are on the long axis at equal distances from the centre. The
         line from the first to the second point gives the angle.

@@ -49,7 +49,7 @@ def simulate(
     Parameters
     ----------
     scene : Scene
-        Its state is that at t = 0, before its impulse acts.
+        Scene in its state at t = 0, before its impulse acts.
     t : float or array_like, shape (n,)
         End time (for 1001 evenly spaced samples), or strictly increasing sample times >= 0 [s]. A
         tuple (0, end), which is a time span in other programs, is rejected because it would mean
@@ -102,8 +102,8 @@ def simulate(
         Rebound speed [m/s] below which "contact" sums the infinitely many remaining bounces. The
         default is 1e-6 sqrt(g min(a, b)), the largest allowed value 1e-2 sqrt(g min(a, b)). The
         relative error of the sum is of the order of the square of this factor. Bounces that would
-        last too long for this accuracy are not summed, which happens if the body is hardly pressed
-        to the ground or restitution is near 1.
+        last too long for this accuracy, because the body is hardly pressed against the ground or
+        restitution is near 1, are not summed.
     blows : iterable of (float, Impulse)
         Blows during the motion of "contact", at nondecreasing times [s] from 0 to the last of
         ``t``. Each is an event of the kind BLOW, after all other events at the same time, and acts
@@ -118,8 +118,8 @@ def simulate(
     count : int
         Number of events of the kinds in ``stop``, counted together, after which the motion stops.
     raise_on_failure : bool
-        Whether an integration that stops before the last time raises an error. If False, the motion
-        up to that time is returned.
+        Whether to raise an error if the integration stops before the last time. If False, the
+        motion up to that time is returned.
 
     Returns
     -------

@@ -24,8 +24,8 @@ Task = tuple[Any, ...]  # a function and its arguments, without the number of th
 _Key = TypeVar("_Key")
 
 _IN_FLIGHT = 128  # largest number of submitted tasks whose results are not yet yielded
-_HELD = 96 * 2**20  # limit [bytes] on results that wait for earlier ones, except for a single one
-_ELEMENTS = 2**16  # elements per task: a multiple of the core's block size, so that bits agree
+_HELD = 96 * 2**20  # largest total size [bytes] of results that wait; a single one may be larger
+_ELEMENTS = 2**16  # elements per task; multiples of the core's block size give identical bits
 
 
 @dataclass(frozen=True)

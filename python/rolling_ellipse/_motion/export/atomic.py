@@ -69,7 +69,7 @@ def write(path: str | os.PathLike[str], content: bytes) -> None:
 
 @contextmanager
 def _locked(path: Path) -> Iterator[bool]:
-    """Lock a file, and yield whether it was free; the lock ends with the process at the latest.
+    """Lock a file, and yield whether it was free. The lock ends with the process, if not before.
 
     Windows needs no lock, because it does not remove open files.
     """

@@ -1,4 +1,4 @@
-"""Trajectories as .npz files, which contain the arrays, and everything else as JSON."""
+"""Trajectories as .npz files, which contain arrays, and everything else as JSON."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .atomic import replacing
 _Made = TypeVar("_Made", bound=Trajectory)
 
 _SCHEMA = 6
-_WITHOUT_BLOWS = 5  # schema whose settings have no blows, and whose events have no effects
+_WITHOUT_BLOWS = 5  # schema without blows in settings, and without impulses in events
 _WITHOUT_RESISTANCE = 4  # schema whose scenes have no rolling resistance
 _VECTORS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")

@@ -144,7 +144,7 @@ def _impulse_of(values: Any) -> Impulse:
 
 
 def npz_about(content: bytes) -> dict[str, Any]:
-    """Return the values of the JSON text "about", which must have a schema, in an .npz file.
+    """Return the values in the JSON text "about" of an .npz file, which must include a schema.
 
     This text is read first because a file of another schema may contain other arrays.
     """

@@ -1,4 +1,4 @@
-"""Results of many scenes: tables of numbers from the core or from files, and what they contain.
+"""Results of many scenes: tables of numbers from the core or from files, and their contents.
 
 Tables from files, which may be damaged, are checked before they are split into answers or arrays.
 An answer is a trajectory, or the exception for its scene. Arrays have the axes of the scenes.
@@ -311,7 +311,7 @@ def counts_of(status: npt.NDArray[np.str_]) -> str:
 def endings_of(
     codes: npt.NDArray[Any], failed: Mapping[int, Exception], shape: tuple[int, ...]
 ) -> dict[str, Any]:
-    """Return status and errors of motions in a shape, given all codes and the exceptions."""
+    """Return the status and errors in the shape of the scenes, from codes and exceptions."""
     return {"status": ENDINGS[codes - REFUSED].reshape(shape), "errors": errors_of(failed, shape)}
 
 
@@ -372,9 +372,9 @@ def gathered(
     names: tuple[str, ...], request: Request, parts: Iterable[tuple[FloatArray, Any]],
     axes: tuple[str, ...], shape: tuple[int, ...] | None,
 ) -> MotionArrays:  # fmt: skip
-    """Return quantities of motions, for pairs of a table of scenes and its results.
+    """Return quantities of motions from pairs of a table of scenes and its results.
 
-    The results are tables, or an exception for a lost worker. A shape of None stands for a list.
+    The results are tables, or an exception for a lost worker. `shape` is None for a list.
     """
     rows, endings = [np.empty((0, WIDTH))], [np.empty(0, int)]
     blocks = [np.empty((len(names), 0, request.times.size))]

@@ -40,7 +40,7 @@ _DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene
 
 @dataclass(frozen=True)
 class Chunk:
-    """Scenes that are computed together, with indices from `begin` up to `end`."""
+    """Scenes that are computed together, with the indices `begin` to `end` - 1."""
 
     index: int
     begin: int
@@ -159,7 +159,7 @@ class SceneGrid:
         return table
 
     def _require_arguments(self) -> None:
-        """Reject invalid arguments of a grid without scenes, those of the body in combination."""
+        """Check the arguments of a grid without scenes; those of the body are checked together."""
         given = {name: values for name, values in self._arrays.items() if values.size}
         for name in filter(given.__contains__, STATE_UNITS):
             require(_entry(name), "finite", given[name], np.isfinite(given[name]))

@@ -266,7 +266,7 @@ class Ends(FieldsOnly):
         return self._scenes.table() if isinstance(self._scenes, SceneGrid) else self._scenes
 
     def _coordinates(self) -> list[tuple[str, FloatArray]]:
-        """Return the label of each axis and the values of its argument, otherwise the indices."""
+        """Return the label of each axis, and the values of its argument or the indices along it."""
         known = {
             name: (name if unit == "1" else f"{name} [{unit}]", values)
             for name, along, values, unit in coordinates_of(self, self._table(), t=self._asked)

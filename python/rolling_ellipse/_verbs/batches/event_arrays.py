@@ -82,7 +82,7 @@ def gathered_events(
             yield table, tables
 
     about = vars(gathered((), request, read(), axes, shape))
-    del about["t"]  # the times of the samples
+    del about["t"]  # sample times, not those of events
     return EventArrays(
         {name: np.concatenate([each[name] for each in found]) for name in found[0]}, **about
     )

@@ -2,8 +2,8 @@
 
 ``request.npz`` contains the settings, the times and the version. ``00000007-1f…-a3….npz`` is the
 chunk with index 7; its name includes the hashes of the request and of its scenes. ``end.json``,
-which is written last, has the number of scenes and the hash of the names of all chunks. Each file
-is written completely or not at all.
+which is written last, has the number, axes and shape of the scenes, and a hash of these and of the
+names of all chunks. Each file is written completely or not at all.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 _SCHEMA = 4
-_WITHOUT_BLOWS = 3  # schema whose settings have no blows, and whose events have no effects
+_WITHOUT_BLOWS = 3  # schema without blows in settings, and without impulses in events
 _WITHOUT_RESISTANCE = 2  # schema whose scenes have no rolling resistance
 _SAME, _SAME_SCENES = "a folder of the same request", "a folder of the same scenes"
 _REQUEST, _END = "request.npz", "end.json"
 _GRID = ("axes", "shape")  # axes and shape of the scenes in `end.json`; older folders lack them
 _CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
 _AGAIN = "simulate_many with the same arguments"
-# Names of files that a folder may contain; hidden files are also allowed
+# Names of files that a folder may contain, including hidden files
 _OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")
 
 _Made = TypeVar("_Made")
@@ -56,7 +56,7 @@ _Names = dict[int, list[str]]  # file names of each chunk, by index, ascending
 class Folder:
     """The files of one request, in a new folder or in the folder of an earlier call.
 
-    If the folder contains any other file, an error names it.
+    An error names a foreign file in a folder without a request, or a chunk of another request.
     """
 
     def __init__(self, path: Any, request: results.Request) -> None:
@@ -226,8 +226,8 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     Raises
     ------
     ValueError
-        If the folder is of another kind, has an unsupported schema or is incomplete, or its files
-        do not belong together. When a motion is read: if its file is damaged.
+        If the folder was not written by `simulate_many`, has an unsupported schema or is
+        incomplete, or its files do not belong together; later, if the file of a motion is damaged.
     OSError
         If the folder cannot be read.
 
@@ -256,7 +256,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
 
 
 def _end_of(folder: Path, request: str, names: _Names, samples: int) -> dict[str, Any]:
-    """Return number, axes and shape of a folder's scenes, if its chunks match ``end.json``."""
+    """Return the number, axes and shape of the scenes, if the chunks match ``end.json``."""
     cure = f": {_AGAIN} rewrites it"
     end = strict.restored(folder / _END, _of_end, strict.OBJECT, "simulate_many", cure)
     for index, (begin, _) in enumerate(sizes(samples)):

@@ -59,7 +59,7 @@ def simulate_many(
     raise_on_failure: bool = True,
     **options: Any,
 ) -> Any:
-    """Return the motions of many scenes, each bit for bit as from `simulate`, for any workers.
+    """Return the motions of many scenes, bit for bit those of `simulate`, for any workers.
 
     The list contains an exception for a scene that cannot be simulated; the others continue. No
     warnings are issued; lost validity is only shown by the status of a trajectory (VALIDITY_LOST).
@@ -106,8 +106,8 @@ def simulate_many(
     ValueError, TypeError
         If an argument is wrong. For an invalid number in a mapping the message gives its index,
         before anything is computed; for an object in an iterable that is not a Scene it gives the
-        index of the object. Also if ``out`` contains anything other than motions of the same
-        scenes, times, settings and version.
+        index of the object. Also if ``out`` contains motions of other scenes, times, settings or
+        versions, or no motions but other files.
     WorkerError
         If workers were lost, with ``out``. Finished chunks are kept; repeat the call to resume.
     OSError
@@ -179,7 +179,7 @@ def _solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tup
             yield chunk, function(*arguments, threads)
         return
     scenes = 0  # number of scenes in the last task
-    each: int = request.size  # largest size of a scene's results so far; at first of its samples
+    each: int = request.size  # largest size of a scene's results so far [bytes]
 
     def tasks() -> Iterator[tuple[Chunk, Task]]:
         nonlocal scenes

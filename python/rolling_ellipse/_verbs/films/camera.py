@@ -15,14 +15,14 @@ from ..._motion.inputs import size_of
 from ...geometry import support
 from .film import NORMAL, TRACKS, Film, Unknowns
 
-_SCALES = tuple(0.2 * 1.5**k for k in range(25))  # 0.2 to 5, and up to 4000 pixels per metre
+_SCALES = tuple(0.2 * 1.5**k for k in range(25))  # 0.2 to 3367 units of the film per metre
 _LATE = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # times of the first frame in units of sqrt(L/g)
-_TOUCHING = 0.05, 0.5  # quantile of heights that is taken as the ground, in flight or in rolling
-# A film is not in metres if the median distance of the body from its median place exceeds this
+_TOUCHING = 0.05, 0.5  # quantile of heights used as the ground, for a start in the air or on it
+# A film is not in metres if the median distance of the body from its median position exceeds this
 # multiple of max(a, b)
 _FAR = 50.0
 _WINDOW, _SURE = 8, 10.0  # least number of frames in a free fall; least ratio of curvature to error
-_NOISE = NORMAL / math.sqrt(20)  # standard deviation over median third difference, for normal noise
+_NOISE = NORMAL / math.sqrt(20)  # standard deviation over median |third difference| of normal noise
 _SMOOTH = 1e-4  # smallest noise relative to the range of a track
 
 
@@ -46,7 +46,7 @@ def require_determined(scene: Scene, names: tuple[str, ...], film: Film) -> None
 
 
 def unit_of(film: Film, scene: Scene) -> float:
-    """Return the order of magnitude of the ratio of lengths in the film to those in the scene."""
+    """Return the rough ratio of lengths in the film to those in the scene."""
     places = film.data[:, :2][:, film.known[:, :2].any(axis=0)]
     far = np.nanmedian(np.abs(places - np.nanmedian(places, axis=0))) / max(scene.a, scene.b)
     return float(far) if far > _FAR else 1.0
@@ -57,7 +57,7 @@ def cameras(film: Film, unknowns: Unknowns) -> Iterator[tuple[dict[str, float], 
     scene, own = unknowns.scene, unknowns.named(unknowns.own)
     grid: dict[str, set[float]] = {}
     if "scale" in own:
-        fall = free_fall(film, scene, least=0.5) or 0.0  # one useless guess if the body only rocks
+        fall = free_fall(film, scene, least=0.5) or 0.0  # a useless guess if the body rocks
         grid["scale"] = {own["scale"], *_SCALES, max(fall, own["scale"] / 2)}
     if "clock" in own:
         grid["clock"] = {own["clock"], *(size_of(scene, "t") * late for late in _LATE)}

@@ -1,4 +1,7 @@
-"""Readings of a film in other trackers' conventions, and the reading that fits the scene."""
+"""A film in other trackers' conventions, and the convention that fits the scene.
+
+Each reading is the film converted from one such convention, such as another unit or sign.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ _RATES = (24, 25, 30, 50, 60, 100, 120, 200, 240, 300, 480, 500, 960, 1000)  # [
 _SLOWED = (2, 3, 4, 5, 8, 10, 16)  # factors of slow or fast motion, if times are those of playback
 _UNITS = [*(1 / rate for rate in (*_SLOWED, *_RATES)), *map(float, _SLOWED)]  # units of time [s]
 _LENGTHS = (100.0, 1000.0)  # centimetres and millimetres per metre
-_WRONG = 3.0  # ratio of free fall to gravity, or inverse, beyond which the units must be wrong
+_WRONG = 3.0  # ratio of free fall to gravity, or its inverse, beyond which the units must be wrong
 _NEAR = 1.2  # accepted ratio of a unit to the one that free fall indicates
 _ALIASED = 10.0  # frames more than this many sqrt(L/g) apart cannot resolve rocking
 _QUICK, _RUN = 6, 2  # number of starts per reading, and number of readings that are fitted fully
@@ -51,7 +54,7 @@ def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film
 def readings(film: Film, names: tuple[str, ...]) -> list[Film]:
     """Return readings of angles and positions in other conventions, with the same unit of time.
 
-    Readings that differ only by free unknowns of the camera are omitted. If a film starts at a time
+    Readings that free unknowns of the camera already cover are omitted. If a film starts at a time
     later than its duration, only another origin of time is tried.
     """
     x, z, theta = film.known.any(axis=0)
@@ -74,7 +77,7 @@ def readings(film: Film, names: tuple[str, ...]) -> list[Film]:
 def fitting(tries: list[Film], unknowns: Unknowns, given: FloatArray, loss: str) -> str:
     """Return the description of the reading that fits best, or "" if none fits.
 
-    Readings are ranked by the likelihood of their residuals, each with its own deviations.
+    Readings are ranked by the likelihood of their residuals, with sigma estimated for each.
     """
     ranked, sizes, unknown = [], sizes_of(unknowns.scene), np.full(len(TRACKS), math.nan)
     for film in tries:

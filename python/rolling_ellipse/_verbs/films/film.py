@@ -26,7 +26,7 @@ CAMERA = ("scale", "ground", "clock")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _BOUNDS |= {"scale": (0.01, 1e5), "clock": (0.0, math.inf)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # bounds: 0.1 to 100 times the guess
-_FINEST, _COARSEST = 1e-15, 1e15  # bounds of sigma relative to the body, for finite squares
+_FINEST, _COARSEST = 1e-15, 1e15  # bounds of sigma/size of the body, for finite squares
 
 
 @dataclass(frozen=True)
@@ -95,8 +95,8 @@ def sigma_of(sigma: Any, scene: Scene) -> FloatArray:
 class Unknowns:
     """Free parameters of a scene and its camera in units of their natural sizes, with bounds.
 
-    `unit` is the order of magnitude of the ratio of lengths in the film to those in the scene. The
-    value of the clock is the time of the first frame in the scene.
+    `unit` is the rough ratio of lengths in the film to those in the scene. The clock is the scene's
+    time at the first frame.
     """
 
     def __init__(self, scene: Scene, names: tuple[str, ...], film: Film, unit: float) -> None:
@@ -107,7 +107,7 @@ class Unknowns:
         sizes |= {"friction": 1.0, "rolling_resistance": 0.1 * min(scene.a, scene.b)}
         try:
             own = [camera[n] if n in camera else value_of(scene, n) for n in names]
-        except ValueError as error:  # the scene has no value for some name
+        except ValueError as error:  # the scene has no finite value of an unknown
             wrong = str(error).removeprefix("wrt")
             raise ValueError(f"free{wrong}: scene must give an initial guess for it") from None
         self.sizes = np.array([sizes.get(n) or size_of(scene, n) for n in names])
@@ -139,7 +139,7 @@ class Unknowns:
         return np.array([values.get(name, own) for name, own in pairs]) / self.sizes
 
     def turned(self, u: FloatArray) -> FloatArray:
-        """Return changes of the unknowns, with the change of theta reduced modulo half turns."""
+        """Return changes of the unknowns, with the change of theta reduced modulo pi."""
         half = math.pi / self.sizes
         whole = np.where(np.array(self.names) == "theta", np.round(u / half), 0.0)
         return u - half * whole

@@ -19,7 +19,7 @@ _ROUNDING = 1e-8  # residuals with a smaller relative deviation are rounding err
 _GAP = 1.5  # largest spacing of neighbouring frames, relative to the median spacing
 _WILD = 5.0  # residuals beyond this many sigma are outliers
 _MANY = 0.2  # the scene does not fit if outliers exceed this share of a track
-_COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # worst deviation of a tracker, in min(a, b) or rad
+_COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # worst sigma of a tracker [min(a, b) or rad]
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ def _printed(name: str, sigma: float) -> str:
 
 
 def counted(search: Search, best: Any, given: FloatArray) -> str:
-    """Describe the number of data, with chi2 or, if they were estimated, the deviations."""
+    """Describe the number of data, and chi2 or, if sigma was estimated, its values."""
     film, residuals = search.film, search.residuals(best.x)
     chi2, sigma = float(np.sum(residuals**2)), search.sigma / search.unknowns.lens(best.x)[0]
     words = [f"{residuals.size} data"]

@@ -24,10 +24,10 @@ _BEGINNING, _LEAST_SHARE = 12.0, 0.1
 _LONGER = 1.6  # factor by which the fitted part grows after the beginning
 _TRIED = 30  # number of starts that are fitted
 _HOPS, _REACH = 20, 5.0  # number of starts around a minimum, and their distance in standard errors
-_WORSE = 1.1, 50.0  # largest ratio and rise of the cost for which the search continues in a cell
-_AS_GOOD, _SAME = 1.01, 0.1  # largest ratio and rise of the cost of an equally good solution
+_WORSE = 1.1, 50.0  # the search goes on in cells up to this ratio and rise of the cost
+_AS_GOOD, _SAME = 1.01, 0.1  # solutions up to this ratio and rise of the cost are equally good
 _SOON = 1e-3  # weight of the clock, compared with other unknowns, in the choice among equal starts
-_IMPOSSIBLE = 1e3  # residual of an invalid scene, relative to the largest one of a body at rest
+_IMPOSSIBLE = 1e3  # residual of an invalid scene, relative to a bound for a body at rest
 _EXACT: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-10)
 _EXACT |= {"max_nfev": 100, "jac": "3-point"}
 _ROUGH: dict[str, Any] = {"ftol": 1e-4, "max_nfev": 20, "jac": "2-point"}
@@ -40,12 +40,12 @@ class Search:
         self.least_squares = required("scipy.optimize", "fit_motion", "fit").least_squares
         self.film, self.unknowns, self.sigma, self.loss = film, unknowns, sigma, loss
         self.track = np.nonzero(film.known)[1]  # track of each datum
-        self.dof = self.track.size - len(unknowns.names)  # degrees of freedom
+        self.dof = self.track.size - len(unknowns.names)
         far = np.abs(film.data) + max(unknowns.scene.a, unknowns.scene.b)
         self.impossible = _IMPOSSIBLE * float(np.nanmax(far / sigma))
 
     def residuals(self, u: FloatArray, some: Film | None = None) -> FloatArray:
-        """Return the residuals of the film, or of the film `some` if it is given."""
+        """Return the residuals of the film, or of another film, `some`."""
         film = some or self.film
         motion = self.unknowns.motion(u, film.t)
         if motion is None:
@@ -70,7 +70,7 @@ class Search:
     def minima(self, tried: int = _TRIED) -> list[Any]:
         """Return the best solution in each cell of friction, in ascending order of cost.
 
-        Starts and cells are compared by the beginning of the film, before small errors have grown.
+        Starts and cells are compared on the beginning of the film, before small errors have grown.
         Solutions that are nearly as good as the best one are then fitted to longer parts.
         """
         share = self._beginning()

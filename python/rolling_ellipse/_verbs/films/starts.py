@@ -22,9 +22,9 @@ _GRID = {
     "theta": (-1.2, -0.4, 0.4, 1.2),  # used if no angle is measured
     "rolling_resistance": (0.05, 0.5),  # in units of its natural size
 }
-_CELL = 1.3  # ratio of the ends of a cell to its friction on the grid; cells overlap
-_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames of the first pre-fit, growth factor, largest number
-_EVERY, _KEPT = 3, 12  # interval of pre-fits with several cameras, and number of cameras kept
+_CELL = 1.3  # factor by which friction may change within a cell; cells overlap
+_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames in the first pre-fit, growth factor, largest number
+_EVERY, _KEPT = 3, 12  # with several cameras: step through the pre-fits, number of cameras kept
 _WEIGHINGS = 20  # rounds of reweighting, each of which reduces the weight of outliers
 _SPINS = 4000  # largest number of angular velocities in a periodogram
 
@@ -32,12 +32,12 @@ _SPINS = 4000  # largest number of angular velocities in a periodogram
 def starts(
     film: Film, unknowns: Unknowns, distance: Callable[[FloatArray], float]
 ) -> Iterator[tuple[float, FloatArray, Box]]:
-    """Yield the best start for each set of coefficients: distance, start, and box of its fit.
+    """Yield the best start for each set of coefficients, as distance, unknowns and bounds.
 
-    Candidates are the values of the scene, and pre-fits to more and more frames, with the cameras
-    for which the film resembles the scene most. Friction stays in one cell of its grid. If it is
-    large enough for the body to stick, no film can determine it, and a step that overshoots into
-    this region would not return.
+    Candidates are the values of the scene and pre-fits to more and more frames, for the cameras
+    with which the film is closest to the scene. The bounds keep friction in one cell of its grid.
+    Where friction is so large that the body sticks, no film can determine it, and a step that
+    overshoots into this region would not return.
     """
     counts = [_FEWEST]
     while counts[-1] < min(film.t.size, _MOST):
@@ -87,7 +87,7 @@ def _grid(film: Film, unknowns: Unknowns) -> dict[int, list[float]]:
 def flight(film: Film, unknowns: Unknowns, count: int) -> dict[str, float]:
     """Return positions and velocities at t = 0, assuming that the first frames have no events.
 
-    Velocities are omitted if the scene has a blow, since those after it are not the scene's.
+    Velocities are omitted if the scene has a blow, since its velocities are those before the blow.
     """
     scene, t = unknowns.scene, film.t[:count]
     pulls = scene.gravity * math.sin(scene.slope), -scene.gravity * math.cos(scene.slope)
@@ -118,9 +118,8 @@ def _line(
 ) -> dict[str, float]:
     """Return the unknown coefficients of a polynomial in time, by name.
 
-    `known` has all coefficients in ascending powers of time, None for the unknown ones.
-
-    The sum of absolute residuals is minimised, so that an outlier has little effect.
+    `known` has all coefficients in ascending powers of time, None for the unknown ones. The sum of
+    absolute residuals is minimised, so that an outlier has little effect.
     """
     free = [name for name, value in known.items() if value is None]
     of_free = [k for k, value in enumerate(known.values()) if value is None]
@@ -141,7 +140,7 @@ def _line(
 def _spin(t: FloatArray, theta: FloatArray, unknowns: Unknowns) -> dict[str, float]:
     """Return the line through angles modulo half turns, from the peak of their periodogram.
 
-    A frame that is wrong by a quarter turn lowers the peak only by 2, from a height of n.
+    A frame that is wrong by a quarter turn lowers the peak only from n to n - 2, for n frames.
     """
     known = _known(unknowns, "theta", "omega")
     angle, omega = known.values()

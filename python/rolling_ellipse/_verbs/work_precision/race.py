@@ -54,7 +54,7 @@ _ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
 
 @dataclass(frozen=True)
 class Contender:
-    """A method or peer with the interface of peers; its call may have `advice`, a warning."""
+    """A method or peer, with the interface of peers; a call may have a warning, `advice`."""
 
     run: Run  # name, model, method, stabilization and tags
     ladder: str | None  # None if the contender has no setting
@@ -88,7 +88,7 @@ class _Simulation:
         return float(motion.theta[0]), float(motion.omega[0]), float(motion.x[0])
 
     def sample(self, times: FloatArray) -> Trajectory:
-        """Return the motion without the warnings of `simulate`; it must be COMPLETED."""
+        """Return the motion without the warnings of `simulate`; raise unless it is COMPLETED."""
         motion = Trajectory.computed(self.scene, settings(*self.settings), sample_times(times))
         if motion.status is not Status.COMPLETED:
             raise IntegrationError(motion)
@@ -101,7 +101,7 @@ class _Simulation:
 
 
 def own_contenders(methods: Any, scene: Scene, rolls: bool) -> list[Contender]:
-    """Return the contenders named by `methods`, or if it is None those that suit the scene."""
+    """Return the contenders named by `methods`; None stands for those that suit the scene."""
     if methods is None:
         methods = _suitable(scene, rolls)
     elif isinstance(methods, str):
@@ -189,7 +189,7 @@ def work_precision(
 ) -> WorkPrecision:  # fmt: skip
     """Run a race between many methods for one motion, and return their errors and times.
 
-    Every method runs at every setting of its ladder. Each run is judged once against the exact
+    Every method runs at each of its tolerances or steps. Each run is judged once against the exact
     motion. Then all runs are timed in rounds, so that other load on the machine affects all of them
     alike; the least time of each run counts. Runs that are refused, stop early or are omitted for
     lack of time are listed with the reason.
@@ -198,7 +198,7 @@ def work_precision(
     ----------
     scene : Scene
     t_end : float or sequence of float
-        End of the motion [s]; for several ends every method runs up to each of them.
+        End time of the motion [s]; every method runs up to each of several end times.
     methods : sequence, optional
         Methods of the package: "flow" (the function, which is exact); names of methods of the model
         "rolling" ("exact", "dop853", …); "contact"; "multipliers/dop853/projection" and the like;
@@ -320,7 +320,7 @@ class _Attempt:
         self.contender, self.judge = contender, judge
         self.run = replace(contender.run, setting=setting, t_end=judge.t_end)
         self.call: Any = None  # the timed call; None before the first answer
-        self.setup = self.spent = 0.0  # time of `judge_once` [s]: set-up, and the rest
+        self.setup = self.spent = 0.0  # times of `judge_once` [s]: set-up; everything else
         self.times: list[float] = []  # [s]
 
     def note(self, status: str, reason: str, **figures: Any) -> None:

@@ -71,8 +71,8 @@ class WorkPrecision:
 
     Arguments `x` of the methods are names of errors: "largest", "final", "l2", "linf", "energy",
     "gap" or "slip". Arguments `y` are names of costs: "time", "samples_time", "setup", "spread",
-    "steps", "rejected", "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by
-    default the last one; any other value raises ValueError.
+    "steps", "rejected", "evaluations", "setting" or "t_end". `t_end` is one of the end times [s],
+    by default the last one; any other value raises ValueError.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class WorkPrecision:
     runs : tuple of Run
         All runs, including those without an answer.
     references : tuple of Reference
-        Source and error of the true motion for each end.
+        Source and error of the true motion for each end time.
     machine : dict of str
         Processor, compiler and flags, versions, date, number of rounds.
 
@@ -101,7 +101,7 @@ class WorkPrecision:
 
     @property
     def reference(self) -> Reference:
-        """The reference for the last end."""
+        """The reference for the last end time."""
         return self.references[-1]
 
     @property
@@ -110,7 +110,7 @@ class WorkPrecision:
         return tuple(dict.fromkeys(run.name for run in self.runs))
 
     def of(self, t_end: float | None = None) -> tuple[Run, ...]:
-        """Return the runs up to one end [s].
+        """Return the runs up to one end time [s].
 
         Examples
         --------
@@ -162,7 +162,7 @@ class WorkPrecision:
     ) -> tuple[str, ...]:
         """Return the names of methods that might still reach an error of at most `at`.
 
-        They have not reached it, but were not run at all their settings for lack of time.
+        They have not reached it, but some of their settings were not run for lack of time.
 
         Examples
         --------
@@ -323,7 +323,7 @@ class WorkPrecision:
         ax: Axes | None = None, *, highlight: Sequence[str] | None = None, by: str | None = None,
         t_end: float | None = None,
     ) -> WorkPrecisionChart:  # fmt: skip
-        """Draw a cost over an error, both on logarithmic axes, and return the artists.
+        """Plot a cost against an error, both on logarithmic axes, and return the artists.
 
         The chart compares two groups: the contenders of `highlight` and all others. Bold stepped
         lines are the fronts of the groups, the least `y` for each error, and arrows show the
@@ -440,7 +440,7 @@ class WorkPrecision:
         return [run for run in runs if max(run.value(x), floor) <= at]
 
     def judged_by(self, t_end: float | None) -> Reference:
-        """Return the reference for the runs up to one end [s].
+        """Return the reference for the runs up to one end time [s].
 
         Examples
         --------

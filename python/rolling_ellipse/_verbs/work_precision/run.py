@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from ..._motion.export.strict import field_names, require_names, scene_of
 
 COMPLETED, NOT_RUN = "COMPLETED", "NOT_RUN"
-EQUAL = 1.2  # ratio of times that count as equal
+EQUAL = 1.2  # largest ratio of times that count as equal
 
 _Record = TypeVar("_Record")
 
@@ -52,7 +52,7 @@ class Run:
     setting: float = math.nan  # relative tolerance, or step [s]; NaN if there is neither
     errors: Errors = Errors()
     time: float = math.nan  # shortest time of a call that returns the state at the end [s]
-    setup: float = math.nan  # cost of a new scene, with the extra time of a first call [s]
+    setup: float = math.nan  # set-up time of a new scene, with the extra time of a first call [s]
     spread: float = math.nan  # median time over least time, minus 1; NaN for a single timing
     steps: int = 0  # number of steps in one call (0 if unknown, as in the next two fields)
     rejected: int = 0
@@ -75,12 +75,11 @@ class Run:
 
 @dataclass(frozen=True)
 class Reference:
-    """Source and error of the true motion that the runs up to one end are compared with.
+    """Source and error of the true motion for the runs up to one end time.
 
-    `attainable` is the sum of the changes of the state at the end due to a relative change of
-    2.2e-16 of each number of the scene, plus two ulp of the state: no computation with doubles can
-    guarantee less. It is NaN if the motion of a given reference lasts longer than that of the
-    package.
+    `attainable` is the sum of the changes of the final state due to a relative change of 2.2e-16 of
+    each number of the scene, plus two ulp of the state: no computation with doubles can guarantee
+    less. It is NaN if the motion of a given reference lasts longer than that of the package.
     """
 
     name: str  # source of the true motion
@@ -106,7 +105,7 @@ def by_name(runs: Iterable[Run]) -> dict[str, list[Run]]:
 
 
 def plain(value: Any) -> Any:
-    """Return nested records, as returned by `asdict`, as JSON values."""
+    """Convert the nested values that `asdict` returns to JSON values."""
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else str(value)
     if isinstance(value, dict):

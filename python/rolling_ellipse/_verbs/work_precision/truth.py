@@ -27,7 +27,7 @@ Truth = Callable[[FloatArray], Columns]
 
 _INEXACT = [each.name for each in fields(Scene) if each.name not in ("mass", "x", "impulse")]
 _ROUNDING = 2.2e-16
-_CHANGE = 2.0**-42  # relative: a thousand roundings, so that rounding is negligible
+_CHANGE = 2.0**-42  # relative change: a thousand ulp, so that rounding is negligible
 _MOST = 500  # maximum number of times at which the attainable error is computed
 _GOLDEN = (math.sqrt(5) - 1) / 2  # multiples modulo 1 are far from simple fractions of a period
 
@@ -67,7 +67,7 @@ class Judge:
         self.reference = Reference(name, t_end, floor, attainable, growth)
 
     def errors(self, sampled: Any, end: tuple[float, float, float]) -> Errors:
-        """Return the errors of a motion at `times` (None if samples are unknown) and at its end."""
+        """Return the errors of a run at its end and, unless `sampled` is None, at `times`."""
         final = float(np.max(self._apart(end, [column[-1] for column in self._truth])))
         if sampled is None:
             return Errors(final=final)
