@@ -64,7 +64,7 @@ if [ "$1" = --suite ]; then
     # the tests in a browser, whose processes would load the runtime; and the fuzzer, which runs as
     # above without its limit. The output of the runtimes is not captured.
     set -- -m pytest -p no:cacheprovider --capture=sys "$@" \
-        --deselect tests/border/test_border.py::test_failing_to_start_threads_changes_no_bit \
+        --deselect tests/border/test_border.py::test_results_are_the_same_if_threads_cannot_be_started \
         --ignore tests/border/test_fuzz.py --ignore tests/player/test_browser.py
     if [ $runtime = libtsan.so ]; then
         set -- "$@" tests/border/test_threads.py tests/border/test_border.py tests/batches \

@@ -1,4 +1,4 @@
-"""`ends` returns the final states and the numbers of events of `simulate`, for arguments of any
+"""`ends` returns the final states and the event counts that `simulate` gives, for arguments of any
 shape and any number of workers."""
 
 import math
@@ -28,7 +28,7 @@ SETTINGS: list[dict[str, Any]] = [
 
 @pytest.mark.parametrize("how", SETTINGS, ids=str)
 def test_ends_equal_simulate_bit_for_bit(how: dict[str, Any]) -> None:
-    """The end of a motion that exceeds `max_events` is at event number `max_events`."""
+    """A motion that exceeds `max_events` ends at event number `max_events`."""
     most = how.get("max_events", 10_000)
     times = [math.inf] * len(SCENES) if "stop" in how else TIMES.tolist()
     ends = rl.ends(SCENES, times, **how)
@@ -62,7 +62,7 @@ def test_the_number_of_workers_changes_no_bit_of_the_results(workers: Any) -> No
 
 
 def test_times_broadcast_with_the_arguments_of_a_mapping() -> None:
-    """The end of a single motion has the shape ()."""
+    """For a single motion, the arrays have the shape ()."""
     body: dict[str, Any] = {"a": 2.0, "b": 1.0, "z": 3.0, "restitution": 0.3}
     ends = rl.ends(body | {"omega": [[1.0], [2.0]]}, [0.5, 1.0, 2.0])
     each = [rl.ends([rl.Scene(**body, omega=w)] * 3, [0.5, 1.0, 2.0]) for w in (1.0, 2.0)]

@@ -1,5 +1,5 @@
-"""Batches on any executor equal `simulate_many` without an executor, bit for bit; a lost task loses
-only its own scenes."""
+"""Batches on any executor give the results of `simulate_many` without one, bit for bit. A lost task
+loses only its own scenes."""
 
 import itertools
 import os
@@ -23,7 +23,7 @@ from rolling_ellipse import Scene, WorkerError, load_many, scenes, simulate_many
 from rolling_ellipse._verbs import workers  # the tests lower its limits
 from rolling_ellipse._verbs.batches.asked import sizes
 
-THETA = np.linspace(0.0, 1.0, 5000)  # 5000 elements are two tasks, of 2048 and 2952
+THETA = np.linspace(0.0, 1.0, 5000)  # 5000 elements form two tasks, of 2048 and 2952
 MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
 
 
@@ -64,7 +64,6 @@ class Mapping:
 
 @pytest.fixture(autouse=True)
 def smaller_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Lower the number of elements per task, so that 5000 elements are divided into two tasks."""
     monkeypatch.setattr(workers, "_ELEMENTS", 2048)
 
 
@@ -109,7 +108,7 @@ def test_results_are_bit_identical_on_every_pool(make: Callable[[], Any], tmp_pa
 
 
 def test_few_or_no_elements_give_the_same_result_as_without_an_executor() -> None:
-    """Scalars give scalars. The times of one body, for which a series is used, form one task."""
+    """Scalars give scalars. Many times of one body, evaluated with a series, form one task."""
     body = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0}
     for t in (1.0, [], [1.0], np.linspace(0, 9, 39), np.linspace(0, 9, 41), [[1.0], [2.0]]):
         for each in (body, body | {"a": [2.0]}):
@@ -228,7 +227,7 @@ def test_the_folder_keeps_finished_scenes_when_another_task_is_lost(
     assert list(load_many(out)) == simulate_many(MANY, [1.0])
 
 
-def test_functions_raise_the_error_that_the_executor_raises() -> None:
+def test_flow_and_classify_raise_the_error_of_the_executor() -> None:
     body = {"a": 2.0, "b": 1.0, "omega": 1.0, "theta": THETA}
     with pytest.raises(BrokenProcessPool):
         rl.classify(**body, workers=Here(lost=(1,)))

@@ -178,9 +178,9 @@ def remake(folder: Path) -> None:
 
 @pytest.mark.parametrize(("name", "stride"), [("chunk", 17), ("request.npz", 17), ("end.json", 1)])
 def test_every_damaged_byte_is_detected_or_harmless(name: str, stride: int, small: Path) -> None:
-    """A file with a changed byte is rejected by name, unless the byte is insignificant, like the
-    dates in a zip archive. Calling simulate_many again repairs chunks and end.json. The call
-    rejects a damaged request.npz, and resumes once that file is removed."""
+    """Reading a file with a changed byte raises an error that names the file, unless the byte is
+    insignificant, like the dates in a zip archive. Calling simulate_many again repairs chunks and
+    end.json, but rejects a damaged request.npz until that file is removed."""
     path = chunks(small)[0] if name == "chunk" else small / name
     whole, expected = path.read_bytes(), list(load_many(small))
     refused = 0
@@ -206,9 +206,7 @@ def test_every_damaged_byte_is_detected_or_harmless(name: str, stride: int, smal
 
 @pytest.mark.parametrize("name", ["request.npz", "end.json", "chunk"])
 @pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18), b"{}", b"\xff\xfe"])
-def test_foreign_files_in_place_of_chunks_are_rejected(
-    name: str, content: bytes, small: Path
-) -> None:
+def test_a_file_with_foreign_content_is_rejected(name: str, content: bytes, small: Path) -> None:
     path = chunks(small)[0] if name == "chunk" else small / name
     path.write_bytes(content)
     with pytest.raises(ValueError, match=rf"^path must name a file written by sim.*{path.name}"):
@@ -234,7 +232,9 @@ def test_an_end_file_with_another_scene_count_is_rejected(count: Any, small: Pat
     ],
     ids=["times", "settings", "scenes"],
 )  # fmt: skip
-def test_two_folders_merged_into_one_are_rejected(changes: Any, out: Path, tmp_path: Path) -> None:
+def test_a_folder_merged_from_two_requests_is_rejected(
+    changes: Any, out: Path, tmp_path: Path
+) -> None:
     request: dict[str, Any] = {"scenes": GRID, "t": np.array([2.0, 6.0])}
     simulate_many(**request, out=out)
     simulate_many(**(request | changes), out=tmp_path / "other")

@@ -1,4 +1,4 @@
-"""`simulate_many` equals `simulate` bit for bit, with exceptions in the places of failed scenes."""
+"""`simulate_many` equals `simulate` bit for bit, and returns exceptions for failed motions."""
 
 import copy
 import inspect
@@ -41,7 +41,7 @@ WAYS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("workers", [1, 2, -1])
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_simulate_many_equals_simulate_bit_for_bit(way: dict[str, Any], workers: int) -> None:
-    """Fields, events and messages of exceptions are equal, and no warning appears."""
+    """Fields, events and exception messages are equal, and there are no warnings."""
     expected = singly(NAMED, TIMES, **way)
     answers = simulate_many(NAMED, TIMES, workers=workers, **way)
     require_same(answers, expected)
@@ -51,7 +51,8 @@ def test_simulate_many_equals_simulate_bit_for_bit(way: dict[str, Any], workers:
 
 
 def test_the_settings_cover_every_kind_of_result() -> None:
-    """The settings in WAYS give motions, refusals and both kinds of early stops."""
+    """The settings in WAYS give complete motions, motions that stop early for either reason, and
+    both types of exceptions."""
     every = {name: simulate_many(NAMED, TIMES, **way) for name, way in WAYS.items()}
     kinds = {name: {type(each) for each in answers} for name, answers in every.items()}
     assert kinds["rolling"] == {rl.Trajectory, ValueError}
@@ -63,7 +64,7 @@ def test_the_settings_cover_every_kind_of_result() -> None:
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
-def test_arrays_equal_the_list_bit_for_bit(way: dict[str, Any]) -> None:
+def test_returned_arrays_equal_the_listed_motions_bit_for_bit(way: dict[str, Any]) -> None:
     """Samples that a motion has not reached, or whose scene is refused, are NaN."""
     names = ("x", "theta", "omega", "z", "friction_force", "mode")
     listed = simulate_many(NAMED * 3, TIMES, **way)
@@ -82,8 +83,8 @@ def test_arrays_equal_the_list_bit_for_bit(way: dict[str, Any]) -> None:
 
 
 def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
-    """Tables have the axes of the arguments, in memory and in a folder. A single argument gives its
-    name to its axis; several arguments, or the scenes of an iterable, share the axis "scene"."""
+    """An axis along which a single argument varies has the name of this argument. An axis of
+    several arguments, or of the scenes of an iterable, is called scene."""
     b, speeds = np.linspace(0.5, 2.0, 3), np.array([0.5, 3.0, 6.0, 6.0])
     grid = {"a": 2.0, "b": b[:, None], "omega": speeds, "friction": 0.8}
     data = simulate_many(grid, TIMES, returns=("theta", "z")).to_xarray()
@@ -101,7 +102,7 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
         listed = simulate_many(wanted, TIMES, returns="x").to_xarray()
         assert listed["x"].dims == ("scene", "t") and np.array_equal(listed["omega0"], speeds)
         assert listed["theta0"].dims == ("scene",) and "b" not in listed.coords
-    # now end.json becomes one of those written before the axes of the scenes were stored
+    # replace end.json by one without axes, as earlier versions wrote it
     (end,) = (tmp_path / "out").glob("end.json")
     names, about = _chunks(tmp_path / "out"), json.loads(end.read_text())
     digest = _digest_of_all(names[0][0].split("-")[1], 12, names, {})
@@ -111,7 +112,7 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("way", ["auto", "multipliers", "not raised"])
 def test_motions_are_read_when_they_are_first_used(way: str) -> None:
-    """Motions can be read in any order. Reading the last one of a chunk frees the tables."""
+    """Motions can be read in any order. Reading the last one of a chunk frees its tables."""
     motions, expected = (run(NAMED * 2, TIMES, **WAYS[way]) for run in (simulate_many, singly))
     assert type(motions) is list and len(motions) == len(expected)
     unread = {i for i, each in enumerate(motions) if UNREAD in vars(each)}
@@ -223,7 +224,7 @@ def test_simulate_many_takes_the_arguments_of_simulate() -> None:
 
 
 def test_chunks_grow_and_cover_all_scenes_in_order() -> None:
-    """Chunks grow from 16 to 2048 scenes and hold at most 2^18 samples."""
+    """Chunks grow from 16 to 2048 scenes, with at most 2^18 samples unless one scene has more."""
     for samples in (1, 1001, 2**20):
         first, grown = zip(*itertools.islice(sizes(samples), 500), strict=True)
         assert first == (*itertools.accumulate(grown[:-1], initial=0),)
@@ -251,8 +252,8 @@ def test_progress_is_shown_with_or_without_a_bar(
 
 
 def test_scenes_are_consumed_only_as_needed(tmp_path: Path) -> None:
-    """Only the scenes of the current chunk are alive if an output folder is given, and each chunk
-    is in the folder when its progress is reported."""
+    """With an output folder, at most two chunks of scenes are alive at a time, and each chunk is in
+    the folder when its progress is reported."""
     living: weakref.WeakSet[Scene] = weakref.WeakSet()
     most, reports = 0, 0
 

@@ -1,8 +1,4 @@
-"""Broken simulators are "right" only where the answer does not depend on the fault.
-
-The table `BROKEN` lists each fault with the problems that it does not affect, the reason for each,
-and the words that the score of any other problem must contain.
-"""
+"""Broken simulators are "right" only where the answer does not depend on the fault."""
 
 import math
 from collections.abc import Callable
@@ -111,7 +107,7 @@ def right(scores: benchmark.Scores) -> set[str]:
 @pytest.mark.parametrize("name", BROKEN)
 @pytest.mark.parametrize("accurate", [True, False])
 def test_only_answers_unaffected_by_the_fault_are_right(name: str, accurate: bool) -> None:
-    """Faults are added to exact motions, and to motions with a gravity too large by 1e-5."""
+    """Faults are added to exact motions and to motions with a relative error of 1e-5 in gravity."""
     broken = BROKEN[name]
 
     def mine(one: Any, t: Any, _: Any) -> Any:
@@ -174,7 +170,6 @@ def test_mistakes_in_the_output_are_named(name: str) -> None:
 @pytest.mark.parametrize("off", [1e-4, 1e-3, 1e-2, 0.1])
 @pytest.mark.parametrize("field", ["gravity", "inertia", "friction", "restitution"])
 def test_wrong_parameters_are_not_reported_as_output_mistakes(field: str, off: float) -> None:
-    """Errors from a wrong parameter of the scene do not look like mistakes in the output."""
     for by in (1 - off, 1 + off):
         if field != "restitution" or by < 1:
             mine = changed(**{field: lambda scene, by=by: getattr(scene, field) * by})

@@ -20,7 +20,9 @@ UPHILL = Scene(0.7, 1.9, mass=3.0, inertia=2.0, slope=0.1, omega=-2.0, theta=1.5
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", [*NAMES, "uphill"])
-def test_the_exact_motion_and_the_jacobian_satisfy_the_equations(name: str, form: str) -> None:
+def test_the_exact_motion_satisfies_the_equations_and_the_jacobian_is_right(
+    name: str, form: str
+) -> None:
     """F is no larger than the change that 8 ulps of each entry of y and y' can cause in it. This
     covers the rounding errors of the motion and of F.
 
@@ -62,7 +64,7 @@ def determined(dae: benchmark.Dae, k: int) -> Any:
     rows, n, numbers = list(zip(y, yp, strict=True)), y.shape[1], range(1, k + 2)
 
     def fitted(cj: float) -> Any:
-        """Coefficients of F_y + cj F_y'; negative indices, from the end, give zeros."""
+        """Coefficients of F_y + cj F_y', followed by zeros, which negative indices select."""
         values = [dae.jacobian(0.0, *row, cj).ravel() for row in rows]
         found = polyfit(nodes, np.array(values), 12)[: k + 2]
         return np.vstack([found, np.zeros((k + 2, n * n))]).reshape(-1, n, n)

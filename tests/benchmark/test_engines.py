@@ -36,7 +36,7 @@ def test_mujoco_reads_mjcf_as_intended() -> None:
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.6])
-def test_mujoco_resists_rolling_by_a_lever_in_metres(friction: float) -> None:
+def test_mujoco_takes_rolling_resistance_as_a_lever_in_metres(friction: float) -> None:
     """A rolling disc decelerates at delta g/(k^2 + R^2), to within 3 % because of the soft cone.
 
     On ground without friction only the couple acts, and the rotation decelerates at delta g/k^2. In

@@ -57,8 +57,8 @@ def problem(name: str) -> Any:
 
 
 def unlike(known: list[float], exact: list[Any]) -> list[tuple[float, float]]:
-    """Pairs of a stored number that is not the nearest double, and that double. If the exact value
-    is midway between two doubles, both count as nearest."""
+    """Each stored number that is not the nearest double, paired with that double. If the exact
+    value is midway between two doubles, both count as nearest."""
     return [
         (p, q)
         for p, value in zip(known, exact, strict=True)
@@ -67,7 +67,7 @@ def unlike(known: list[float], exact: list[Any]) -> list[tuple[float, float]]:
 
 
 @pytest.mark.parametrize("name", ROLLING)
-def test_each_value_is_the_double_nearest_to_the_exact_one(name: str) -> None:
+def test_rolling_problems_store_the_doubles_nearest_to_the_exact_values(name: str) -> None:
     data = problem(name)
     with mp.workdps(DIGITS + 5):
         rows = ((known, rolled(data["scene"], mpf(t))) for t, *known in data["states"])

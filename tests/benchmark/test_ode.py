@@ -1,4 +1,4 @@
-"""The problems as differential equations, solved by SciPy, reach the known answers."""
+"""SciPy reproduces the known answers from the differential equations of the problems."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ IDS = [one.id for one in benchmark.problems(TAGS)]  # without rolling resistance
 
 
 def solved(one: benchmark.Problem) -> tuple[NDArray[np.float64], list[tuple[str, float]]]:
-    """States at the given times, and events."""
+    """The states at the times of the problem, and the events."""
     arc, states = one.ode(), np.empty_like(one.states)
     events: list[tuple[str, float]] = []
     while True:
@@ -39,7 +39,7 @@ def test_dop853_is_accurate_to_nine_digits(name: str) -> None:
     scored = one.times <= one.horizon
     assert np.max(np.abs(states - one.states)[scored] / one.scales) < 1e-9
     known = [(event.kind.name, event.t, event.condition) for event in one.events]
-    if name == "hit.settle":  # the slower bounces end at the STICK of the known answer
+    if name == "hit.settle":  # the equations omit the slowest bounces and stick early
         assert 0 < known[-1][1] - events[-1][1] < 4e-7 / one.scales[5]
         known, events = known[:-1], events[: len(known) - 1]
     assert [kind for kind, _ in events] == [kind for kind, *_ in known]

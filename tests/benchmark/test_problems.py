@@ -1,10 +1,11 @@
-"""The package gives the known answers of reference/make_benchmark.py. They share no code.
+"""The package reproduces the known answers of reference/make_benchmark.py, with which it shares no
+code.
 
-The bound: inputs are doubles, off by up to half an ulp (a relative 1.1e-16), and so are the numbers
-in the files. The condition number is the change of an answer, relative to its scale, divided by the
-relative change of all inputs. A backward stable method is off by (condition + 1)/2 ulps. `ULPS`
-leaves room for roundings of the method and for forces, which change by up to three weights if the
-state changes by its scale.
+Error bound: the inputs and the numbers in the files are doubles, each off by up to half an ulp
+(relative 1.1e-16). The condition number is the change of an answer, relative to its scale, divided
+by the relative change of all inputs. A backward stable method is off by (condition + 1)/2 ulps.
+`ULPS` also allows for rounding errors of the method and for forces, which change by up to three
+weights if the state changes by its scale.
 """
 
 import json
@@ -36,7 +37,7 @@ def motion(name: str) -> Trajectory:
 
 
 def errors(data: Any, found: Any, exact: Any) -> NDArray[np.float64]:
-    """Errors of rows of states, with or without forces, in ulps of their scales."""
+    """The largest error of each row of states, with or without forces, in ulps of the scales."""
     weight = data["scene"]["mass"] * data["scene"]["gravity"]
     scales = np.array([*data["scales"], weight, weight])[: np.shape(exact)[1]]
     largest: NDArray[np.float64] = np.max(np.abs(np.asarray(found) - exact) / scales, axis=1)
@@ -112,8 +113,8 @@ def test_the_files_are_small_and_share_one_format() -> None:
 
 
 def test_answers_follow_from_the_known_motions() -> None:
-    """A bounce counts if the body rises by more than 0.002 L before it. The end of the bounces is
-    the time of the last event."""
+    """An impact counts if the body has risen by more than 0.002 L since the impact before. The
+    bounces end at the last event."""
     for name, data in PROBLEMS.items():
         answer, rows = data["answer"], np.array(data["states"])
         values = {column: rows[:, k] for k, column in enumerate(data["columns"])}

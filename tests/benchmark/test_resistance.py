@@ -9,8 +9,8 @@ NAMES = ["roll.resist", "slide.resist"]
 
 
 def test_the_slide_stops_when_friction_has_used_up_the_momentum() -> None:
-    """Without rotation, the centre has no vertical velocity. This is so at the start and at the
-    end of the slide, so that the mean normal force is the weight."""
+    """The body does not rotate at the start or at the end of the slide, so that its centre has no
+    vertical velocity then. Therefore the mean normal force is the weight."""
     one = benchmark.problem("slide.resist")
     stop = one.states[0, 3] / (one.scene.friction * one.scene.gravity)
     assert one.events[0].t == pytest.approx(stop, rel=1e-15)

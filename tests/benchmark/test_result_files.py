@@ -13,15 +13,15 @@ from rolling_ellipse import benchmark
 IDS = [one.id for one in benchmark.problems()]
 
 
-def test_exact_answers_in_files_are_right_and_missing_ones_are_named(tmp_path: Path) -> None:
-    """The files have 17 digits, and vx and vz as synonyms of the columns x_dot and z_dot."""
+def test_exact_answers_in_files_are_right_and_missing_times_are_counted(tmp_path: Path) -> None:
+    """The numbers have 17 digits. The columns vx and vz are synonyms of x_dot and z_dot."""
     benchmark.export(tmp_path)
     assert [len([*tmp_path.glob(f"*.{kind}")]) for kind in ("json", "sdf", "xml")] == [20, 18, 17]
     assert {s.answer for s in benchmark.score(tmp_path)} == {"not supported"}
     for one in benchmark.problems():
         t = one.output_times[: 51 if one.id == "roll.rock" else None]
         write_states(tmp_path, one, one.exact(t), header="t,x,z,theta,vx,vz,omega")
-    benchmark.export(tmp_path)  # leaves the files of results unchanged
+    benchmark.export(tmp_path)  # leaves result files unchanged
     (tmp_path / "roll.thin.csv").write_text("")
     scores = benchmark.score(tmp_path)
     unlike = [(score.problem, score.answer) for score in scores if not score.passed]
@@ -44,8 +44,8 @@ def test_a_truncated_file_is_rejected_naming_its_last_row(tmp_path: Path) -> Non
 
 
 def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
-    """Events are then inferred from the states. The file has x_dot and its synonym vx. Only the
-    first of these columns is used."""
+    """Events are then inferred from the states. Their file has both x_dot and its synonym vx, of
+    which only the first is used."""
     one = benchmark.problem("slide.stick")
     rows = np.column_stack([one.output_times, one.exact(one.output_times), one.output_times])
     header = "t,x,z,theta,x_dot,z_dot,omega,vx"
@@ -55,8 +55,8 @@ def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
     assert score.passed and score.events["times"].keys() == {"STICK"}
 
 
-def test_of_two_rows_at_one_time_the_second_is_scored(tmp_path: Path) -> None:
-    """Two rows at one time are the two sides of a jump; here the first of each pair is wrong."""
+def test_the_second_of_two_rows_at_one_time_is_scored(tmp_path: Path) -> None:
+    """Two rows at one time are the states before and after a jump. Here the first one is wrong."""
     one = benchmark.problem("slide.stick")
     rows = np.repeat(np.column_stack([one.output_times, one.exact(one.output_times)]), 2, axis=0)
     rows[::2, 1:] += 1.0
@@ -67,8 +67,7 @@ def test_of_two_rows_at_one_time_the_second_is_scored(tmp_path: Path) -> None:
 
 
 def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
-    """If a file, a link, a dangling link, a folder or a pipe has one of the names, nothing is
-    written."""
+    """If a file, link, dangling link, folder or pipe has one of the names, nothing is written."""
     mine, place = tmp_path / "mine", tmp_path / "place"
     for name in ("README.txt", "roll.rock.json", "roll.rock.csv", "hit.settle.sdf"):
         for make in (
@@ -80,7 +79,7 @@ def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
             mine.write_text("mine")
             make(place / name)
             if name.endswith(".csv") and (place / name).is_file():
-                benchmark.export(place)  # files of results may be present
+                benchmark.export(place)  # result files may be present
             else:
                 with pytest.raises(ValueError, match=f"folder must contain no other {name}, got"):
                     benchmark.export(place)

@@ -1,4 +1,4 @@
-"""Scores of the exact motion, of broken simulators and of files, and refused results."""
+"""Scores of exact motions, of broken simulators and of incomplete results, and the command line."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from oracles.simulators import STATE, changed, exact, score_of, states_of
 from rolling_ellipse import EventKind, Mode, benchmark, impacts, simulate
 from rolling_ellipse.__main__ import main
-from rolling_ellipse.benchmark._events import gap_and_slip, read_off  # scores do not show them
+from rolling_ellipse.benchmark._events import gap_and_slip, read_off  # these are not public
 from rolling_ellipse.geometry import support_slope
 
 IDS = [one.id for one in benchmark.problems()]
@@ -67,8 +67,7 @@ def sticky(one: Any, t: Any, setting: Any) -> Any:
 
 
 def hovering(one: Any, t: Any, setting: Any) -> Any:
-    """Convex friction: the gap opens at the rate friction times slip for 0.01 s, and the body
-    slides at that height."""
+    """Convex friction: while sliding, the body hovers at the height friction * |slip| * 0.01 s."""
     states = one.exact(t)
     hop = 0.01 * one.scene.friction * np.abs(gap_and_slip(one, states)[1])
     states[:, 1] += np.where(one.trajectory.sol(t).mode == Mode.SLIDING, hop, 0.0)
@@ -113,7 +112,7 @@ BROKEN: dict[str, tuple[Callable[..., Any], set[str]]] = {
     ),
     # the only body that lifts off
     "sticky ground": (sticky, {"leave.slip_then_lift"}),
-    # bodies that slide for a while; other slip is within collisions
+    # the bodies that also slip outside collisions
     "convex friction": (hovering, WITH_SLIP - {"hit.drop_slip_e", "hit.settle", "law.which"}),
 }  # fmt: skip
 
@@ -123,16 +122,17 @@ def by_step(one: Any, t: Any, step: Any) -> Any:
 
 
 def rolls_only(one: Any, t: Any, h: Any) -> Any:
-    """A simulator without flight, whose states are too large by h, and tenfold in roll.rock."""
+    """A simulator without flight. States are too large by a factor 1 + h, or 10 in roll.rock."""
     if "flight" in one.tags:
         raise NotImplementedError("bodies stay on the ground")
     return one.exact(t) * (10 if one.id == "roll.rock" else 1 + h)
 
 
 def test_the_exact_motion_gets_a_perfect_score() -> None:
-    """Twelve digits are correct: an error of 2.2e-16 of all inputs grows by the condition number.
+    """Twelve digits are correct. A relative error of 2.2e-16 in the inputs is amplified by the
+    condition number.
 
-    Two such units are allowed for the rounding of the motion and of the known answer.
+    Twice that error is allowed, since both the motion and the known answer are rounded.
     """
     scores = benchmark.run(exact)
     assert [score.problem for score in scores] == IDS and len(IDS) == 20

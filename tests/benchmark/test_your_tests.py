@@ -1,4 +1,4 @@
-"""The recipes of docs/your_tests.md run as they are written, and its tables are right."""
+"""The recipes in docs/your_tests.md run as printed, and the tables on that page are right."""
 
 import math
 import re
@@ -49,7 +49,7 @@ def report(folder: Path, *names: str, old: str = "", new: str = "") -> tuple[int
         ("sin, cos = np", "raise RuntimeError('diverged')\n    sin, cos = np", "Error: diverged"),
     ],
 )
-def test_the_recipe_reports_a_wrong_step_and_keeps_a_picture(
+def test_the_recipe_reports_a_wrong_step_and_saves_a_picture(
     tmp_path: Path, old: str, new: str, told: str
 ) -> None:
     code, text = report(tmp_path, "my_engine.py", "test_known_answers.py", old=old, new=new)
@@ -59,7 +59,7 @@ def test_the_recipe_reports_a_wrong_step_and_keeps_a_picture(
 
 
 @pytest.mark.parametrize(("old", "new"), [("", ""), ("normal) / k2\n", "normal) / 1.01 / k2\n")])
-def test_the_recipe_for_the_rate_passes_only_for_the_rigid_limit(
+def test_the_recipe_for_convergence_fails_if_the_limit_is_not_rigid(
     tmp_path: Path, old: str, new: str
 ) -> None:
     """An error of 1 % in the inertia leaves an error that no stiffness removes."""
@@ -104,7 +104,7 @@ def test_the_package_reproduces_the_rigid_answers(row: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("row", [row for row in TABLE if row["a"] == row["b"]], ids=name_of)
 def test_the_answers_of_the_disc_have_closed_forms(row: dict[str, Any]) -> None:
-    """Textbook formulas with R = 1, k^2 = 1/2: an impulse s/3 ends a slip s."""
+    """Textbook formulas for R = 1 and k^2 = 1/2. An impulse s/3 per unit mass stops a slip of s."""
     mu, lever = row["friction"], row["rolling_resistance"]
     x_dot, z_dot, omega = (row[name] for name in SPEEDS)
     found = [row[name] for name in MAKER["AFTER"]]
@@ -122,13 +122,13 @@ def test_the_answers_of_the_disc_have_closed_forms(row: dict[str, Any]) -> None:
     assert found == pytest.approx(known, rel=1e-15, abs=1e-15)
 
 
-def test_errors_fall_with_the_stiffness_by_the_stated_exponents() -> None:
+def test_errors_fall_with_stiffness_at_the_stated_exponents() -> None:
     """The next term of an error is smaller by a factor of B/sqrt(s), where s = stiffness/mass.
 
     A contact needs a time of the order of 1/sqrt(s) to form. During this time speeds change by
     g/sqrt(s) and the body turns by omega/sqrt(s), so that B is of the order of g and at most 20.
-    Exponents from s = 1e8 (impacts) and 1e6 (lasting contacts) on are off by less than 20 * 1e-4
-    and 20 * 1e-3.
+    Exponents fitted from s = 1e8 upwards (impacts) or 1e6 upwards (lasting contacts) are off by
+    less than 20 * 1e-4 or 20 * 1e-3.
     """
     kinds = {"IMPACT": ("latch", -0.5, 2e-3), "STICK": ("dashpot", -1.0, 2e-2)}
     kinds["REST"] = kinds["STICK"]
@@ -161,8 +161,8 @@ def test_the_attractive_force_of_a_dashpot_causes_its_remaining_error() -> None:
 
 
 @pytest.mark.parametrize("number", [10, 31, 33, 20])
-def test_the_integrator_of_the_maker_gives_the_stored_errors(number: int) -> None:
-    """Stored errors have five digits; the integrator's own are below 1e-9."""
+def test_hard_limit_py_reproduces_the_stored_errors(number: int) -> None:
+    """The stored errors have five digits, and the integration error is below 1e-9."""
     pytest.importorskip("scipy")
     row = TABLE[number]
     law = "latch" if row["event"] == "IMPACT" else "dashpot"
@@ -176,7 +176,7 @@ def test_the_tables_of_the_page_agree_with_the_data() -> None:
 
 
 def printed(problem: str, contact: str, step: float) -> list[float]:
-    """Errors on the page: of the product of transitions, of MJX and of its differences."""
+    """The errors printed on the page for the product of transitions, MJX and differences of MJX."""
     row = rf"^{problem} +\w+ +{contact} +{step:g} +\S+ +(\S+) +(\S+) +(\S+)$"
     (found,) = re.findall(row, PAGE, re.MULTILINE)
     return [float(each) for each in found]
@@ -188,7 +188,7 @@ def model_of(mujoco: Any, known: benchmark.Gradient, step: float) -> tuple[Any, 
 
 
 def test_mujoco_reproduces_the_errors_on_the_page() -> None:
-    """The page has two digits; other versions of MuJoCo may change the contact by some percent."""
+    """The page has two digits; other versions of MuJoCo may change the contact by a few percent."""
     mujoco, names = pytest.importorskip("mujoco"), dict[str, Any]()
     exec(BLOCKS["mujoco"], names)
     for known in benchmark.gradients():
@@ -220,7 +220,7 @@ def test_lammps_reproduces_the_errors_on_the_page() -> None:
     (row,) = [row for row in TABLE if name_of(row) == "disc oblique 0.1 1 0"]
     try:
         errors = [names["error"](row, k, 100) for k in (1e6, 1e8)]
-    except OSError as reason:  # the library of MPI cannot be loaded
+    except OSError as reason:  # the MPI library cannot be loaded
         pytest.skip(f"no MPI: {reason}")
     (shown,) = re.findall(r"^disc oblique +1\.0 0\.1 .* (\S+) +(\S+)$", PAGE, re.MULTILINE)
     assert errors == pytest.approx([float(each) for each in shown], rel=0.02)

@@ -33,8 +33,8 @@ def test_unaligned_arrays_are_copied_on_entry() -> None:
     assert not there.flags.aligned and copied == [False, True]
 
 
-def test_failing_to_start_threads_changes_no_bit() -> None:
-    """200 workers give the bits of one thread even if memory runs out after about twenty stacks."""
+def test_results_are_the_same_if_threads_cannot_be_started() -> None:
+    """The memory limit leaves room for the stacks of about 20 of the 200 threads."""
     code = """
         import resource
         import numpy as np
@@ -126,7 +126,7 @@ LOOPS: dict[str, Callable[[], Any]] = {
 @pytest.mark.parametrize("loop", LOOPS.values(), ids=LOOPS.keys())
 def test_ctrl_c_interrupts_every_long_loop(loop: Callable[[], Any]) -> None:
     """The third signal, after 0.3 s, raises KeyboardInterrupt; each loop would take longer. A loop
-    that does not check for signals would receive a single one, at its end."""
+    that does not check for signals would receive only one signal, when it ends."""
     met = 0
 
     def third(*_: object) -> None:

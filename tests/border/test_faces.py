@@ -1,4 +1,4 @@
-"""Objects are printed with names of codes and with units, and as HTML that sets no colours."""
+"""Objects print with units and with the names of codes. Their HTML sets no colours."""
 
 import copy
 import dataclasses
@@ -27,7 +27,7 @@ WEIRD = rl.Scene(
 
 
 def sliding() -> Events:
-    """The 54 events of half a minute downhill."""
+    """The 54 events of a body that moves down a slope for 30 s."""
     return rl.simulate(rl.scenes.slope, 30.0).events
 
 
@@ -46,7 +46,7 @@ each_listed = pytest.mark.parametrize("make", LISTED.values(), ids=LISTED)
 
 
 class Reader(HTMLParser):
-    """Parser of the cells of a table, whose elements must be closed in order and set no colours."""
+    """Parser of table cells. Elements must be closed in order and must not set colours."""
 
     def __init__(self, html: str) -> None:
         super().__init__()
@@ -81,7 +81,7 @@ def test_codes_print_their_names(kind: Any) -> None:
 
 
 @pytest.mark.parametrize("kind", [rl.Outcome, rl.Mode, rl.EventKind, rl.Validity, rl.Status])
-def test_members_equal_their_names_and_nothing_else(kind: Any) -> None:
+def test_members_equal_only_their_names_and_codes(kind: Any) -> None:
     coded = issubclass(kind, int)
     for each in kind:
         for other in (each.name, np.str_(each.name), each, kind[each.name], copy.copy(each)):
@@ -169,12 +169,12 @@ def test_values_are_compared_by_content(make: Callable[[], Any]) -> None:
         assert one != thing
 
 
-def test_a_changed_field_makes_a_value_unequal() -> None:
+def test_objects_with_different_fields_are_unequal() -> None:
     things: Any = (rl.certify(rl.scenes.jump), rl.thresholds(2.0, 1.0), sliding()[3], fitted())
     for made in things:
         for field in filter(lambda each: each.init, dataclasses.fields(made)):
             if field.name in ("measured", "predicted", "covariance"):
-                continue  # they follow from `errors`, which is compared
+                continue  # these fields are not compared
             value = np.zeros(2) if field.name == "errors" else -7.0
             assert dataclasses.replace(made, **{field.name: value}) != made, field.name
     assert sliding() == sliding() and sliding()[:3] != sliding()[:4]

@@ -1,7 +1,7 @@
-"""Each field of the core's tables survives every path through the package.
+"""Each field of the core's tables passes unchanged through every interface of the package.
 
-A contact motion has the same bits in all units that are powers of two. This shows that each field
-has the dimension of its unit.
+A contact motion has the same bits in any units scaled by powers of two. This shows that each field
+has the right dimension.
 """
 
 import dataclasses
@@ -28,7 +28,7 @@ GIVEN = {
     "friction": 0.3, "restitution": 0.6, "theta": 0.5, "omega": 1.5, "x": 0.7, "z": 2.5,
     "x_dot": 0.4, "z_dot": -0.3,
 }  # fmt: skip
-# Fields of a Scene without an option of the command line, and the reasons.
+# Fields of a Scene that have no command-line option, with the reasons.
 NOT_TYPED = {
     "x": "a motion is the same from every place",
     "z": "the body starts on the ground, where a blow can press it down",
@@ -45,7 +45,7 @@ def names(kind: Any) -> list[str]:
 
 
 def changed(name: str) -> Scene:
-    """START with one number changed by 2^-6 of itself."""
+    """START with one number increased by a relative 2^-6."""
     return START.replace(**{name: getattr(START, name) * (1 + 2**-6)})
 
 
@@ -93,7 +93,7 @@ def test_a_scene_keeps_its_values_through_every_interface(
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_every_value_of_a_scene_affects_the_motion(name: str) -> None:
-    """The core reads each number, and scales it correctly to its own units of a contact motion."""
+    """This shows that the core reads each number."""
     one, other = (rl.simulate(scene, TIMES, model="contact") for scene in (START, changed(name)))
     assert any(getattr(one, each).tobytes() != getattr(other, each).tobytes() for each in STATE)
 
@@ -126,7 +126,7 @@ def test_each_field_is_a_command_line_option_or_has_a_reason() -> None:
 
 
 def test_settings_have_the_fields_of_the_core() -> None:
-    """The core reads every field; it would refuse DEFAULTS if one were missing."""
+    """The core raises an error if any field is missing."""
     given = DEFAULTS.__getstate__()
     for name in names(Settings):
         with pytest.raises(KeyError, match=name):

@@ -28,7 +28,7 @@ def test_a_short_run_finds_no_fault() -> None:
 
 
 def test_the_fuzzer_draws_every_public_argument() -> None:
-    """An argument of a new function needs a line in `NUMBERS` or `OTHERS` of `fuzz/calls.py`."""
+    """An argument of a new function needs an entry in `NUMBERS` or `OTHERS` of `fuzz/calls.py`."""
     from fuzz.calls import FUNCTIONS, NUMBERS, OTHERS, OWN, PLAIN, SLOW
 
     assert set(FUNCTIONS) == {*OWN, *PLAIN, *SLOW}

@@ -43,7 +43,7 @@ DAE = {form: ROLL.dae(form) for form in ("index3", "index2", "index1", "ggl")}
 
 
 def drawn(form: str) -> dict[str, Array]:
-    """States and rates near the motion of a form."""
+    """States y near the exact motion, and random rates, for one form of the equations."""
     y = DAE[form].exact(TIMES)
     return {"y": y + 0.1 * within(-1, 1, y.shape[1]), "yp": within(-1, 1, y.shape[1])}
 
@@ -74,7 +74,7 @@ BLOWS = {"jx": within(-3, 3), "jz": within(-9, 0), "dx": within(-1, 1), "dz": wi
 ACCELERATED = ("eq_39", "lambda4_numerator", "eq_40", "complete_f", "eq_41", "eq_42", "multipliers")
 FIRST = np.linspace(0, 9, 7)
 CALLS: dict[str, Call] = {
-    # the times of one motion share a table: single times agree to rounding units, not in bits
+    # times of one motion share a table, so that single times agree only to within rounding
     "flow": Call(rl.flow, {"t": within(-2, 9), **BODY, **START, "gyration2": within(0.2, 2),
                            "gravity": within(1.6, 9.8)}),
     "flow: times": Call(lambda t: rl.flow(t, **AXES, theta=0.1, omega=3.0), {"t": TIMES}, False),
@@ -233,7 +233,7 @@ SHAPES = ((3, 1, 5), (4, 1), (5,), ())  # of successive arguments; they broadcas
 
 
 def shaped(name: str, *shapes: tuple[int, ...]) -> dict[str, Array]:
-    """The arguments of a function, reduced to these shapes in turn."""
+    """The arguments of a function, resized to the given shapes in turn."""
     sizes = zip(CALLS[name].given.items(), itertools.cycle(shapes))
     return {key: np.resize(values, shape) for (key, values), shape in sizes}
 
@@ -298,7 +298,7 @@ NO_ARRAYS = {"path", "folder", "figure", "figsize", "ax", "workers", "peers", "p
 
 
 def public() -> Iterator[tuple[str, Any]]:
-    """Public functions and methods with their names; those of a module have its name in front."""
+    """Public functions and methods, with names qualified by their module and class."""
     for name in (each for each in dir(rl) if not each.startswith("_")):
         thing = getattr(rl, name)
         inside = getattr(thing, "__all__", ()) if inspect.ismodule(thing) else ()

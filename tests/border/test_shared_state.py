@@ -1,4 +1,4 @@
-"""Films, pictures, pages and races never change state that all threads share, not even briefly."""
+"""Films, pictures, pages and races do not change state shared by all threads, not even briefly."""
 
 import platform
 import warnings
@@ -53,7 +53,7 @@ def explorer(path: Path) -> None:
 
 
 def refused_picture() -> None:
-    """Draw a picture that fails while its figure is open."""
+    """Make a picture fail while its figure is open."""
     with pytest.raises(ValueError):
         rl.plot_energy(ROLLED, color="no such colour")
 
@@ -93,7 +93,7 @@ def test_the_package_does_not_catch_warnings(action: Any, tmp_path: Path, monkey
     def caught(*_: Any, **__: Any) -> None:
         raise AssertionError("warnings are caught")
 
-    platform.processor()  # looked up only once, in a subprocess that catches warnings
+    platform.processor()  # its first call starts a subprocess, which catches warnings
     with monkeypatch.context() as patched:
         patched.setattr(warnings, "catch_warnings", caught)
         action(tmp_path)
@@ -103,7 +103,7 @@ def test_the_package_does_not_catch_warnings(action: Any, tmp_path: Path, monkey
 def test_shared_settings_stay_unchanged_while_a_film_is_written(
     suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The settings are compared within each frame, when other threads may run."""
+    """The settings are compared while each frame is drawn, when other threads may run."""
     before, seen, usual = dict(matplotlib.rcParams), [], Patch.draw
 
     def compared(self: Patch, *args: Any, **options: Any) -> None:

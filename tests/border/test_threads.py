@@ -139,7 +139,7 @@ def test_lazily_computed_properties_are_the_same_in_all_threads(make: Callable[[
     """Eight threads read the properties of a new object at the same time, each in its own order."""
 
     def comparable(value: Any) -> Any:
-        """The value; for an object of the core, which has no fields in Python, its class."""
+        """The value itself, or the class name for an object of the core, which has no fields."""
         kind = type(value)
         return kind.__name__ if kind.__module__ == _core.__name__ else value
 
@@ -157,8 +157,7 @@ def test_lazily_computed_properties_are_the_same_in_all_threads(make: Callable[[
             require_same({name: comparable(read[name]) for name in names}, alone)
 
 
-def test_every_property_cached_by_a_trajectory_is_tested() -> None:
-    """`late_names` finds properties of the samples and values that the solver computes later."""
+def test_late_names_finds_the_cached_properties_of_a_trajectory() -> None:
     seen = {"events", "psi", "energy", "normal_force", "turns", "reason", "stats"}
     assert seen <= set(late_names(ROLLED))
 
@@ -174,8 +173,8 @@ READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
 def test_computing_a_property_of_one_motion_does_not_block_another_motion(
     within: str, read: Callable[[rl.Trajectory], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """While one thread is held inside a property of a motion, another thread reads the property of
-    another motion."""
+    """While one thread is held inside a property of a motion, another thread reads the same
+    property of another motion."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
     begun, released, usual = Event(), Event(), attrgetter(within)(trajectories)
 

@@ -36,7 +36,7 @@ def numbers(state: InitialState, names: tuple[str, ...] = STATE) -> list[float]:
 
 
 def time_of_blow(motion: Trajectory, rng: np.random.Generator, last: float) -> float:
-    """A random time from `last`, the time of the last blow, on. It may be `last` itself, the time
+    """A random time not before `last`, the time of the last blow. It may be `last` itself, the time
     of an event, or halfway between two events."""
     times = [last, *(each.t for each in motion.events if each.t >= last), motion.t_end]
     place = int(rng.integers(len(times)))
@@ -69,7 +69,7 @@ def struck(seed: int) -> Trajectory:
 
 
 def require_chained(scene: Scene, blows: Blows) -> Trajectory:
-    """Require that the last blow acts as it does on the scene at its time.
+    """Require that the last blow acts as it does on a scene that starts at the time of the blow.
 
     States and effects of events have equal bits, since they do not depend on the clock. A time is
     the sum of the time of the blow and a time of the chained motion. Both are rounded, and so is
@@ -91,7 +91,7 @@ def require_chained(scene: Scene, blows: Blows) -> Trajectory:
     assert numbers(event.state_after, names) == numbers(again.initial_state, names)
     ulps = 2 * np.spacing(SPAN)
     assert abs(motion.t_end - (t + after.t_end)) <= ulps and motion.status is after.status
-    alike = min(len(rest), len(after.events))  # one motion may end just before the last event
+    alike = min(len(rest), len(after.events))  # one motion may end just before its last event
     assert all(SPAN - each.t <= ulps for each in rest[alike:])
     assert all(SPAN - t - each.t <= ulps for each in after.events[alike:])
     for one, other in zip(rest, after.events, strict=False):
@@ -100,7 +100,8 @@ def require_chained(scene: Scene, blows: Blows) -> Trajectory:
             one_state, other_state = getattr(one, when), getattr(other, when)
             assert numbers(one_state, names) == numbers(other_state, names)
     first = after.events[0].t if after.events else after.t_end
-    for share in (0.0,) if scene.rolling_resistance else (0.0, 0.25, 0.75):  # turns are not events
+    # with resistance, an arc may end at a turning point, which is not an event
+    for share in (0.0,) if scene.rolling_resistance else (0.0, 0.25, 0.75):
         since = share * first
         if (now := t + since) - t == since and now <= motion.t_end:
             one_sample, other_sample = motion.sol(now), after.sol(since)
@@ -140,7 +141,7 @@ def require_balance(motion: Trajectory) -> None:
     for one, other in pairwise(motion.events):
         mode, hits = one.state_after.mode, other.kind in (EventKind.IMPACT, EventKind.BLOW)
         rolls = mode is Mode.ROLLING and not scene.rolling_resistance
-        if rolls or (mode is Mode.FLIGHT and hits):  # other flights are sums of bounces
+        if rolls or (mode is Mode.FLIGHT and hits):  # other flights are summed bounces
             size = sum(
                 size_of_energy(scene, each) for each in (one.state_after, other.state_before)
             )
@@ -148,7 +149,7 @@ def require_balance(motion: Trajectory) -> None:
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_a_blow_acts_as_on_the_scene_at_its_time(seed: int) -> None:
+def test_a_blow_acts_as_it_does_at_the_start_of_a_scene(seed: int) -> None:
     scene, blows = random_struck(seed)
     motions = [require_chained(scene, blows[:count]) for count in range(1, len(blows) + 1)]
     require_balance(motions[-1])
@@ -206,7 +207,7 @@ def test_a_blow_in_the_air_changes_only_the_flight() -> None:
     assert motion.x_dot[1] == 2.0 and motion.omega[1] == 2.0 * 0.5 / scene.gyration2
 
 
-def test_samples_and_sol_show_the_state_after_the_last_blow_of_a_time() -> None:
+def test_samples_and_sol_show_the_state_after_the_last_simultaneous_blow() -> None:
     motion = rl.simulate(rl.scenes.report, [0.0, 2.0, 6.0], blows=REPORT)
     first, second = motion.events[:2]
     assert first.state_after.omega == second.state_before.omega < second.state_after.omega
@@ -301,7 +302,7 @@ def test_a_table_of_events_with_blows_equals_the_events() -> None:
 
 
 def test_the_losses_of_a_motion_exclude_the_work_of_its_blows() -> None:
-    """Rolling loses no energy, so that only roundings remain."""
+    """Rolling loses no energy, so that only rounding errors remain."""
     motion = rl.simulate(rl.scenes.report, 4.0, blows=[(2.0, Impulse.press(2.0, 0.5))])
     assert abs(motion.energy[-1] - motion.energy[0]) > 1
     lost = losses(motion)
@@ -332,6 +333,6 @@ def test_derivatives_of_a_divided_motion_include_the_effects_of_blows() -> None:
     assert np.abs(parts.value[..., 0] - whole.value).max() <= 1e-10 * np.abs(whole.value).max()
 
 
-def test_the_reason_holds_until_the_first_blow() -> None:
+def test_the_stated_reason_holds_until_the_first_blow() -> None:
     said, alone = (rl.simulate(rl.scenes.report, 6.0, blows=each).reason for each in (REPORT, ()))
     assert said == f"{alone} All of this holds until the blow at t = 2 s."

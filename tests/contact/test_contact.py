@@ -51,9 +51,9 @@ def test_a_body_dropped_without_spin_comes_to_rest(
     assert abs(kinds(simulate(scene, 2 * meant)).count(EventKind.IMPACT) - count) <= 1
 
 
-def test_velocities_of_a_settling_body_change_linearly_until_it_rests() -> None:
-    """Infinitely many bounces are one segment with linearly interpolated velocities; theta and x
-    are their integrals plus the averaged displacement of the bounces."""
+def test_velocities_of_a_settling_body_change_linearly_until_it_sticks() -> None:
+    """The infinitely many bounces form one segment with linearly interpolated velocities. theta and
+    x are the integrals of these, plus an evenly spread displacement of the bounces."""
     scene = Scene(2.0, 1.0, theta=0.3, omega=1.0, z=2.5, friction=0.4, restitution=0.5, x_dot=1.0)
     motion = simulate(scene, 2.0)
     stays = next(i for i, each in enumerate(motion.events) if each.kind is EventKind.STICK)
@@ -76,13 +76,12 @@ def test_velocities_of_a_settling_body_change_linearly_until_it_rests() -> None:
         most = 1e-9 * abs(end - start) + 4 * EPS * abs(start)
         assert np.all(np.abs(getattr(inside, name) - expected) <= most), name
     at = support(inside.theta, scene.a, scene.b)
-    # The height is computed at the angle reduced by quarter turns: equal to within rounding.
+    # The height is computed from the angle reduced by quarter turns, hence the rounding error.
     assert np.all(np.abs(inside.z - at.h) <= 2 * EPS * at.h)
     assert np.all(inside.normal_force == 0)
 
 
 def test_bounces_cover_the_same_distance_from_any_start_to_within_rounding() -> None:
-    """A thousand bounces cover the same distance from x = 0 and from x = 1."""
     scene = Scene(
         0.03, 1.0, gravity=1.0, inertia=0.001, theta=1.5718, omega=1.0,
         impulse=Impulse(jz=1e-7), restitution=1.0,
@@ -95,7 +94,7 @@ def test_bounces_cover_the_same_distance_from_any_start_to_within_rounding() -> 
 
 
 def test_a_body_bouncing_down_a_steep_slope_accelerates_uniformly() -> None:
-    """Without friction, the body has one acceleration while it flies, settles and slides."""
+    """Without friction, the acceleration is the same while the body flies, settles and slides."""
     slope = 1.5
     scene = Scene(2.0, 1.0, friction=0.0, restitution=0.5, slope=slope, z=1.0 + 1e-12)
     motion = simulate(scene, 30.0)
@@ -200,7 +199,7 @@ def test_a_slide_may_jam_midway(scene: Scene) -> None:
     left = ratio * (jam.state_before.omega - omega)
     assert slip - slip_before == pytest.approx(left, abs=1e-9)
     assert motion.t[-1] <= jam.t and motion.t_end == jam.t > 0
-    # some roundings of the terms, and of the angle on which h depends
+    # rounding errors of the terms, and of the angle on which h depends
     moved, speed = jam.state_before.x - start.x, max(abs(start.x_dot), 1.0)
     friction, lasts = -side * scene.friction, jam.t - t0
     expected = way_of_slide(scene, start, friction, jam.state_before.theta, lasts)
@@ -353,7 +352,7 @@ def test_every_motion_obeys_the_laws_of_contact() -> None:
 
 
 def test_an_event_at_the_last_time_is_included() -> None:
-    """Impacts end exact flights, whose times do not depend on the span."""
+    """Impacts end exact flights, so that their times do not depend on the span."""
     events = simulate(rl.scenes.bounce, 5.0).events
     assert len(events) >= 5
     for event in events:
@@ -433,8 +432,8 @@ def test_leaving_the_ground_does_not_count_as_slipping() -> None:
 @pytest.mark.parametrize("theta", [-3e15, 1e16, 1e22, -1e50])
 @pytest.mark.parametrize("omega", [0.5, 3.0])
 def test_whole_half_turns_of_the_angle_do_not_change_the_motion(theta: float, omega: float) -> None:
-    """An angle far from zero and its remainder modulo pi give the same events, at the same times to
-    within 40 roundings and at the same angles."""
+    """An angle far from zero and its remainder modulo pi give the same events, at the same angles
+    and at the same times to within 40 roundings."""
     with mp.workdps(400):
         rest = float(mp.mpf(theta) - mp.nint(mp.mpf(theta) / mp.pi) * mp.pi)
     near = Scene(1.0, 0.2, theta=rest, omega=omega, friction=0.6, restitution=0.5, x_dot=2.0)
@@ -475,7 +474,7 @@ def test_a_flight_too_fast_for_doubles_is_reported() -> None:
 
 @pytest.mark.parametrize("theta", [1e-101, -1e-150, 1e-235, -5e-324])
 @pytest.mark.parametrize("omega", [-30.0, 30.0, 1e6])
-def test_infinite_friction_acts_alike_at_and_near_the_flat_position(
+def test_infinite_friction_acts_the_same_at_and_near_the_flat_position(
     theta: float, omega: float
 ) -> None:
     """A slide at this angle would end at theta/100, and its friction, c/Gtn, would overflow."""

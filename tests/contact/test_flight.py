@@ -57,8 +57,8 @@ class Gap:
         return float(8 * EPS * (z + turned))
 
     def lowest_before(self, t: float) -> float:
-        """Smallest value strictly inside (0, t): 500 samples per half turn, and Newton's method on
-        the rate at each dip, so that no dip hides between two samples."""
+        """Smallest gap strictly inside (0, t), from 500 samples per half turn and Newton's method
+        on the rate at each dip, so that no dip between two samples is missed."""
         looks = 500 * (2 + int(abs(self.omega) * t / math.pi))
         times = np.linspace(0, np.longdouble(t), looks + 1)[1:-1]
         values = self(times)
@@ -146,10 +146,10 @@ def test_a_body_may_leave_the_ground_by_acceleration_alone(
         (0.34, 0.46, -8.5, 6.4), (0.04, -1.24, 1.4, 7.2), (0.31, 0.62, -3.7, 0.2),
     ],
 )  # fmt: skip
-def test_after_a_downward_blow_no_velocity_into_the_ground_remains(
+def test_a_downward_blow_leaves_no_velocity_into_the_ground(
     b: float, theta: float, omega: float, strength: float
 ) -> None:
-    """The body flies at once from a closed gap with gap rate zero, after a blow of any strength."""
+    """After a blow of any strength, the body takes off at once. The gap and its rate start at 0."""
     blow = Impulse(jx=0.0, jz=-strength, dx=0.0, dz=0.0)
     scene = Scene(2.0, b, theta=theta, omega=omega, friction=0.6, impulse=blow)
     start = scene.initial_state
@@ -187,8 +187,8 @@ def test_a_body_spinning_too_fast_for_the_resolution_of_time_still_lands(
 
 @pytest.mark.parametrize("strength", [1e-3, 1e-6, 1e-9])
 def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) -> None:
-    """The speed off the ground comes from the blow alone, without a difference of velocities that
-    are 1e9 times as fast. The reference has 40 digits; speed and time take ten operations each."""
+    """The speed off the ground comes from the blow alone, without a difference of velocities up to
+    1e9 times as large. The reference has 40 digits. Speed and time take ten operations."""
     blow = Impulse(jx=0.3 * strength, jz=strength, dx=0.2, dz=0.4)
     scene = Scene(2.0, 1.3, theta=0.7, omega=1.1, friction=0.4, impulse=blow)
     landing = simulate(scene, 1.0, model="contact").events[0]
@@ -233,7 +233,7 @@ def test_elastic_impacts_neither_gain_nor_lose_energy(
 
 @pytest.mark.parametrize("theta", [0.3, 1e5])
 @pytest.mark.parametrize("slope", [0.0, -0.768, 0.4])
-def test_equal_hops_of_a_circle_add_no_roundings(slope: float, theta: float) -> None:
+def test_rounding_errors_of_equal_hops_do_not_add_up(slope: float, theta: float) -> None:
     """Without friction, impacts change neither omega nor x_dot. The bound covers one rounding of
     each input and of the result, although equal roundings of equal hops could add up."""
     radius, fall, speed = 0.039, GRAVITY * math.sin(slope), -0.0357
@@ -254,8 +254,7 @@ def test_equal_hops_of_a_circle_add_no_roundings(slope: float, theta: float) -> 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.61, 0.9])
 def test_summed_bounces_of_a_spinning_disc_conserve_momentum(restitution: float) -> None:
-    """x' = x0' + mu (g t - z0'), since friction is mu times the impulse of N; the rim's speed is
-    30 m/s."""
+    """x' = x0' + mu (g t - z0'), since the impulse of friction is mu times that of N."""
     disc: dict[str, Any] = {"friction": 1e-3, "omega": 30.0, "x_dot": 0.02, "z_dot": 1.1}
     scene = Scene(1.0, 1.0, z=1.05, restitution=restitution, **disc)
     motion = simulate(scene, [8.0])

@@ -2,8 +2,8 @@
 
 The free acceleration into the ground, c = g cos(alpha) + h'' omega^2, is least on the tip. A body
 that spins there with omega^2 = g cos(alpha)/|h''| is free for an instant, and pressed down before
-and after. At an angle with c = 0 on level ground it leaves while it turns towards the tip, and
-stays while it turns away.
+and after. Where c = 0 at another angle on level ground, the body takes off if it turns towards the
+tip, and stays in contact if it turns away from it.
 """
 
 import math
@@ -41,7 +41,7 @@ def lowest(moving: Trajectory) -> float:
 def test_a_weightless_tip_stays_on_frictionless_ground(
     a: float, b: float, ulps: int, side: int, restitution: float
 ) -> None:
-    """The body slides on without friction and keeps (k^2 + h'^2) omega^2/2 + g h."""
+    """The body keeps sliding without friction, and conserves (k^2 + h'^2) omega^2/2 + g h."""
     start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
     scene = Scene(a, b, friction=0.0, theta=tip(a, b), omega=side * start, restitution=restitution)
     moving = simulate(scene, np.linspace(0.0, 1.0 / start, 200))
@@ -92,7 +92,9 @@ def test_away_from_the_tip_the_direction_of_rotation_decides_lift_off(
 @pytest.mark.parametrize("slope", [-1.4, -0.2, 0.2, 1.4])
 @pytest.mark.parametrize(("a", "b"), BODIES)
 @pytest.mark.parametrize("side", [1, -1])
-def test_a_tip_on_rough_slopes_gains_no_energy(a: float, b: float, side: int, slope: float) -> None:
+def test_a_weightless_tip_gains_no_energy_on_rough_slopes(
+    a: float, b: float, side: int, slope: float
+) -> None:
     omega = side * weightless_spin(a, b, tip(a, b), 9.81 * math.cos(slope))
     scene = Scene(a, b, theta=tip(a, b), omega=omega, slope=slope)
     moving = simulate(scene, np.linspace(0.0, 0.2 / abs(omega), 50), model="contact")
@@ -104,7 +106,7 @@ def test_a_tip_on_rough_slopes_gains_no_energy(a: float, b: float, side: int, sl
 def test_infinite_friction_makes_a_tip_weightless_and_keeps_it_so() -> None:
     """Infinite friction on a slipping tip spins it up instantly until c = 0. After that friction
     keeps the gap closed without a normal force: the centre falls freely, h = a - g t^2/2, and c
-    grows again as the square of the angle, from below its rounding."""
+    grows from 0 as the square of the angle."""
     scene = Scene(75.0, 50.0, gravity=1.0, theta=-math.pi / 2, x_dot=17.0)
     moving = simulate(scene, np.linspace(0.0, 4.0, 60), model="contact")
     assert all(each.kind is not EventKind.LIFT_OFF for each in moving.events)

@@ -1,4 +1,4 @@
-"""Starts without slip whose friction is, to within rounding, exactly what they need.
+"""Starts without slip, at which the friction is exactly what rolling needs, to within rounding.
 
 The next moment decides whether such a body rolls or slips. It must do one of the two, and move as
 it would with slightly more or slightly less friction.
@@ -68,7 +68,7 @@ def test_just_enough_friction_holds_an_equilibrium(slope: float, omega: float, u
 @pytest.mark.parametrize("ulps", [-2, 0, 2, 100])
 @pytest.mark.parametrize("swing", [6.6e-13, -6.6e-13])
 def test_a_barely_rocking_body_is_held_by_friction(swing: float, ulps: int) -> None:
-    """During the swing |F|/N is tan(slope) to 2e-14; it is far larger a microradian away.
+    """During the swing |F|/N equals tan(slope) to 2e-14. It is far larger a microradian away.
 
     A thin plate lies where tan(slope) = h'/h, that is sin(2 theta)(a^2 - b^2)/2 = tan(slope) h^2.
     """

@@ -1,4 +1,5 @@
-"""Bodies whose normal force acts a lever ahead of the contact: its couple opposes the rotation.
+"""Bodies with rolling resistance: the normal force acts a distance delta ahead of the contact
+point, and its couple opposes the rotation.
 
 The laws are checked against all modes that a contact could have, and against the work of the
 couple. test_contact_reference.py compares whole motions with references of 30 digits, including
@@ -61,8 +62,7 @@ def allowed(scene: Scene, slip: float) -> list[Answer]:
 
 
 def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
-    """About half of the 1500 states have no rotation, and half have no slip. Those that could fly
-    are skipped."""
+    """Half of the states have no rotation, and half no slip. Those that could fly are skipped."""
     random = np.random.default_rng(7)
     taken = {mode: 0 for mode in Mode}
     for _ in range(1500):
@@ -104,7 +104,7 @@ def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
 def test_rolling_resistance_alone_can_jam_a_light_body(
     friction: float, lever: float, theta: float, inertia: float | None
 ) -> None:
-    """It jams if k^2 + h'(h' - s mu h + s' delta) <= 0; without friction delta > 2 k."""
+    """The body jams if k^2 + h'(h' - s mu h + s' delta) <= 0. For mu = 0 this needs delta > 2 k."""
     scene = Scene(
         2.0, 1.0, theta=theta, omega=1.0 if friction == 0 else -1.0, friction=friction,
         x_dot=0.0 if friction == 0 else 5.0, inertia=inertia, rolling_resistance=lever,
@@ -132,7 +132,7 @@ def test_a_body_rests_where_its_centre_is_above_the_patch_of_contact(slope: floa
 
 @pytest.mark.parametrize("friction", [1.0, math.inf])
 def test_the_energy_lost_in_rolling_is_the_work_of_the_couple(friction: float) -> None:
-    """The work is delta times the integral of N |omega|, by Gauss's rule between turning points."""
+    """The integral of delta N |omega| is computed with Gauss's rule between turning points."""
     scene = ROCKING.replace(friction=friction, omega=1.5, rolling_resistance=0.03)
     motion = simulate(scene, 9.0)
     assert not motion.events
@@ -143,7 +143,7 @@ def test_the_energy_lost_in_rolling_is_the_work_of_the_couple(friction: float) -
         at = motion.sol(begin + (nodes + 1) / 2 * (end - begin))
         work += 0.03 * (end - begin) / 2 * float(weights @ (at.normal_force * np.abs(at.omega)))
     lost = motion.energy[0] - motion.energy[-1]
-    # the error of the quadrature in each half swing is below the roundings of the energy
+    # in each half swing, the quadrature error is below the rounding error of the energy
     assert lost == pytest.approx(work, abs=64 * EPS * motion.energy[0] * len(ends))
 
 
@@ -163,7 +163,7 @@ def test_a_small_lever_changes_the_motion_in_proportion() -> None:
         simulate(ROCKING.replace(rolling_resistance=lever), [3.0]).theta[0] - free
         for lever in (1e-6, 5e-7, 1e-12)
     ]
-    assert change[0] / change[1] == pytest.approx(2, rel=1e-5)  # quadratic terms are 1e-6 of it
+    assert change[0] / change[1] == pytest.approx(2, rel=1e-5)  # quadratic terms add only 1e-6
     assert change[2] == pytest.approx(change[0] * 1e-6, abs=32 * EPS)
 
 
@@ -183,7 +183,7 @@ def test_a_motion_can_be_restarted_from_any_of_its_states(scene: Scene) -> None:
         rest = simulate(whole.scene_at(begin), [6.0 - begin])
         later = [event.kind for event in whole.events if event.t > begin]
         assert [event.kind for event in rest.events] == later
-        # A shift of the start by roundings grows no more than e^(2 t) between 0.4 and 6 s
+        # Rounding errors of the restarted state grow by no more than e^(2 t) between 0.4 and 6 s
         assert rest.theta[-1] == pytest.approx(whole.theta[-1], abs=1e5 * EPS)
 
 

@@ -1,4 +1,4 @@
-"""Slides agree with closed forms, which their series do not use.
+"""Slides agree with closed forms that the power series do not use.
 
 With s the sign of the slip, per unit mass: N = z'' + g cos(alpha) and F = -s mu N integrate to
     x' = x0' - s mu (h' omega - h0' omega0 + g cos(alpha) t) + g sin(alpha) t,
@@ -37,7 +37,7 @@ def slides(count: int, seed: int, **given: Any) -> list[tuple[Scene, Trajectory]
 
 
 def friction_share(scene: Scene, motion: Trajectory) -> float:
-    """-mu s, where s is the sign of the slip in the middle: the slip may be 0 at the start."""
+    """-mu s, with the sign s of the slip in the middle, since the slip may be 0 at the start."""
     h = support(float(motion.theta[20]), scene.a, scene.b)[0]
     return -math.copysign(scene.friction, motion.x_dot[20] - h * motion.omega[20])
 
@@ -56,7 +56,7 @@ def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
         pushed = dh * omega - dh0 * start.omega + into * t
         x_dot = start.x_dot + friction * pushed + along * t
         x = start.x + way_of_slide(scene, start, friction, theta, t)
-        # a few ulp of theta and omega in h' omega, of h and h', and of the sums themselves
+        # a few ulp each: of h' omega through theta and omega, of h and h', and of the sums
         turn = np.abs(ddh * omega) * (1 + np.abs(theta)) + np.abs(dh * omega)
         speeds = abs(start.x_dot) + (1 + scene.friction) * (turn.max() + into * t) + abs(along) * t
         ways = abs(start.x) + h.max() * (1 + scene.friction) + speeds.max() * t
@@ -66,10 +66,10 @@ def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
 
 
 def test_a_frictionless_slide_conserves_energy() -> None:
-    """(k^2 + h'^2) omega^2/2 + g h over a thousand oscillations changes by a random walk of
-    roundings.
+    """Over a thousand oscillations, (k^2 + h'^2) omega^2/2 + g h changes only by a random walk of
+    rounding errors.
 
-    A slide over a period takes about a dozen pieces, each of which rounds theta and omega once.
+    A period takes about a dozen pieces, each of which rounds theta and omega once.
     """
     scene = Scene(2.0, 1.0, friction=0.0, theta=1.0)
     motion = simulate(scene, np.linspace(0.0, 2e3, 4001), model="contact")
@@ -92,7 +92,7 @@ def test_a_frictionless_slide_creeps_over_the_tip_at_every_pass(
     motion = simulate(scene, 60.0, model="contact")
     times = [float(motion.when(theta=theta + k * math.pi)[0]) for k in (1, 2, 3)]
     there = motion.sol(times)
-    missed = 2e-15 * math.sqrt(GRAVITY)  # rad/s: sqrt(2 g (h_tip - h)/D) of that angle, at most
+    missed = 2e-15 * math.sqrt(GRAVITY)  # rad/s: at most sqrt(2 g (h_tip - h)/D) at that angle
     assert np.max(np.abs(there.omega - creep)) <= 64 * EPS * creep + missed**2 / creep
 
 
@@ -184,8 +184,8 @@ def test_the_timing_of_a_light_body_rocking_near_a_jam_stays_accurate() -> None:
 
 
 def test_a_slide_on_the_verge_of_sticking_has_no_slip_left() -> None:
-    """The time of STICK is rounded up, here by 1e-13 s, in which the slip would change its sign;
-    with the other sign this light body jams."""
+    """The time of STICK is rounded up, here by 1e-13 s. Within this time the slip would change its
+    sign, and with the other sign this light body would jam."""
     scene = Scene(
         1.0, 0.2077657187476592, mass=424.789, gravity=2.580260509729424e-06,
         inertia=1.4559909370998418, slope=0.9607224662144154, friction=0.9467990822739261,
@@ -207,8 +207,7 @@ def test_a_slide_takes_few_steps() -> None:
 
 def test_a_slide_is_smooth_where_its_pieces_meet() -> None:
     """The spacing of the samples is shorter than any piece. Second differences are the square of
-    the spacing times the second derivative of a smooth function, plus the rounding of three
-    samples."""
+    the spacing times the second derivative of a smooth function, plus three roundings."""
     step = 1e-5
     times = np.arange(0.0, 1.4, step)
     motion = simulate(scenes.slip, times, model="contact")
@@ -238,7 +237,7 @@ def test_a_slide_with_almost_no_contact_response_sticks_at_once(theta: float) ->
 
 
 def test_a_slide_too_fast_for_doubles_is_reported() -> None:
-    """A ball falls along a slope of 1e-200, until the square of its time overflows."""
+    """A ball falls along a slope of 1e-200, until the square of the time overflows."""
     scene = Scene(1.0, 1.0, slope=1e-200, friction=1e-236)
     found = simulate(scene, [0.0, 1e100, 1e200], model="contact", raise_on_failure=False)
     assert found.status is Status.STEP_TOO_SMALL and found.events == ()
@@ -290,9 +289,9 @@ def test_a_nearly_round_body_leaves_a_slope_where_its_normal_force_vanishes(
 def test_a_sliding_ball_accelerates_uniformly_however_far_it_turns(
     k2: float, turned: float
 ) -> None:
-    """The ball slides mu g t^2/2 at the speed mu g t until a omega equals x', a factor 1 + k^2/a^2
-    earlier than the time at which friction would end the spin. The remaining spin is a difference,
-    exact to its roundings."""
+    """The ball slides a distance mu g t^2/2 and reaches the speed mu g t. It sticks when x' equals
+    a omega, at 1/(1 + k^2/a^2) of the time at which friction would end the spin. The remaining spin
+    is a difference of two rounded terms."""
     spin_end = 2.0  # time at which friction would end the spin
     omega = 2 * turned / spin_end
     friction = omega / spin_end * k2 / GRAVITY
@@ -310,7 +309,7 @@ def test_a_sliding_ball_accelerates_uniformly_however_far_it_turns(
 
 
 def test_the_centre_moves_uniformly_without_friction() -> None:
-    """x_dot is constant to the last bit, and x = x0 + x_dot t. Neither is a sum with h omega."""
+    """x_dot is constant to the last bit, and x = x0 + x_dot t. Neither is computed from h omega."""
     motions = slides(40, 31, friction=0.0, slope=0.0)
     for scene, motion in motions:
         start = scene.initial_state.x_dot

@@ -27,7 +27,9 @@ def followed(scene: Scene, t: Any, **how: Any) -> rl.Trajectory:
 
 @pytest.mark.parametrize("kinds", KINDS)
 @pytest.mark.parametrize("count", [1, 3])
-def test_a_motion_stops_after_all_events_of_the_instant(kinds: tuple[str, ...], count: int) -> None:
+def test_a_motion_stops_after_all_events_at_its_stop_time(
+    kinds: tuple[str, ...], count: int
+) -> None:
     """The events up to the stop equal those of the motion without a stop, bit for bit."""
     stopped = 0
     for scene in SCENES:
@@ -65,8 +67,8 @@ def test_event_kinds_are_accepted_as_names_or_members() -> None:
     assert len({rl.simulate(THROWN, math.inf, stop=way).t_end for way in ways}) == 1
 
 
-def test_a_blow_can_be_the_stop() -> None:
-    """A blow at the instant of the stop is struck, a later one is not."""
+def test_a_motion_can_stop_at_a_blow() -> None:
+    """A blow at the time of the stop still acts. A later one does not."""
     hit = rl.simulate(THROWN, math.inf, stop="impact").t_end
     blows = [(hit, Impulse(jz=1.0)), (hit + 1, Impulse(jz=1.0))]
     kinds = [e.kind.name for e in rl.simulate(THROWN, LONG, stop="impact", blows=blows).events]
@@ -127,7 +129,7 @@ def test_a_motion_with_rolling_resistance_is_decided_by_rest_alone() -> None:
 
 
 def effects_of_roundings(at: rl.Ends, end: float) -> Any:
-    """Sum of the changes of the final states (6, n) when each number of the states is rounded."""
+    """Sum of the changes of the final states (6, n) caused by rounding each number of a state."""
     last, moved = at.go_on(end), np.zeros((len(STATE), *at.t.shape))
     for name in STATE:
         values = getattr(at, name)
@@ -178,7 +180,7 @@ def test_a_slide_that_starts_without_steps_left_ends_with_max_steps() -> None:
 
 
 def test_a_motion_too_fast_for_doubles_is_not_continued() -> None:
-    """It has no state to continue from, and keeps its events, time and exception."""
+    """The motion has no state to continue from, and keeps its events, time and exception."""
     fast = Scene(1.0, 1e-3, theta=3.5438281059200847, omega=-1e-3, slope=-1.5, restitution=1.0)
     at = rl.ends([fast, THROWN], [1e300, 1.0])
     later = at.go_on([1e301, 2.0])

@@ -1,6 +1,5 @@
-"""Answers to the tasks of the course, computed from closed forms and Newton's law, with SciPy's
-quadrature, root finding and least squares. Wrong answers come from the same formulas with typical
-mistakes."""
+"""Answers to the tasks of the course, computed from closed forms and Newton's law with SciPy. Wrong
+answers come from the same formulas with typical mistakes."""
 
 import math
 from functools import cache
@@ -19,7 +18,7 @@ STATE = ("theta", "x_dot", "z_dot", "omega")
 FILMED = {
     "10.1": "x_dot", "10.2": "omega", "10.3": "restitution", "10.4": "friction", "10.5": "chi2",
 }  # fmt: skip
-# The numbers from which the film of sheet 10 was made, and its noise
+# The numbers from which the film of sheet 10 was computed, and its noise
 THROWN = {
     "x": 0.0, "z": 0.1, "theta": 0.5, "x_dot": 0.317, "z_dot": 0.243, "omega": 11.63,
     "restitution": 0.55, "friction": 0.18,
@@ -33,7 +32,7 @@ USUAL = (
 PLAIN = dict.fromkeys((*STATE, "slope", "restitution", "jx", "jz", "dx", "dz"), 0.0)
 PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # friction that prevents any slip
 PLAIN |= {"torque": False}  # True for the mistake of setting the moment about C to I_C omega_dot
-PLAIN |= {"posed": 1.0, "spun": 1.0}  # factors of theta and omega t in the air
+PLAIN |= {"posed": 1.0, "spun": 1.0}  # factors of theta and omega t in flight
 
 
 @cache
@@ -129,7 +128,7 @@ class Given(SimpleNamespace):
         return self.but(theta=start + rate * t, z_dot=self.z_dot - self.gravity * t)
 
     def slid(self) -> float:
-        """Angular velocity after an impact with Lambda_x = -mu s Lambda_z from start to end."""
+        """Angular velocity after an impact that slips throughout: Lambda_x = -mu s Lambda_z."""
         h, lead, _ = self.at(self.theta)
         along = -self.friction * math.copysign(1, self.x_dot - h * self.omega)
         arm = (h * along + lead) / self.inertia
@@ -231,7 +230,7 @@ TRUE: dict[str, Any] = {
     "9.4": lambda d: math.sqrt(-d.gravity * d.at(TIP)[2] / d.about_contact(TIP)),
     **dict.fromkeys(FILMED, fitted),
 }  # fmt: skip
-WRONG: dict[tuple[str, str], Any] = {  # formulas: small angles, and M_C = I_C omega_dot
+WRONG: dict[tuple[str, str], Any] = {  # formulas with one mistake each
     ("small", "2.4"): lambda d: 2 * math.pi / TRUE["2.3"](d),
     ("small", "3.5"): Given.small_rocking,
     ("point", "1.3"): lambda d: TRUE["1.4"](d), ("point", "1.4"): lambda d: TRUE["1.3"](d),
@@ -299,7 +298,8 @@ def answer(number: str, made: tuple[str, ...] = (), seed: int | None = None) -> 
 
 def allowed(number: str, seed: int | None = None) -> float:
     """Tolerance: half a percent for answers from impacts and for chi^2, twice the standard error
-    for those from the film, and half a digit plus 1e-4 times the condition number for others."""
+    for those from the film, and half a unit of the fourth digit plus 1e-4 times the condition
+    number for others."""
     right = abs(answer(number, (), seed))
     if number[0] == "8" or number == "10.5":
         return 5e-3 * right

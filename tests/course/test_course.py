@@ -1,4 +1,4 @@
-"""Marks of the course for right and wrong answers; `pytest -rP -k marks` shows all marks."""
+"""Marks of the course for right and wrong answers; `pytest -rP -k marks` prints all marks."""
 
 import math
 from itertools import combinations
@@ -12,12 +12,13 @@ from rolling_ellipse import course
 from rolling_ellipse.course import _answers
 
 IMPACTS = ("theta", "x_dot", "y_dot", "omega", "x_dot_after", "y_dot_after", "omega_after")
-DATA_IN_DEGREES = ("degrees", "Degrees", "dEGREES")  # of which at most one is made at once
+DATA_IN_DEGREES = ("degrees", "Degrees", "dEGREES")  # at most one of these is made at a time
 TASKS = {task.number: task for task in course.tasks()}
 
 
 def spelled(names: set[str]) -> list[tuple[str, ...]]:
-    """Mistakes by hand that the marks call by these names: data, answer or both in degrees."""
+    """The mistakes in `by_hand` that a mark describes by these names. The name degrees stands for
+    degrees in the data, in the answer or in both."""
     others = tuple(names - {"degrees"})
     if "degrees" not in names:
         return [others]
@@ -75,8 +76,8 @@ def test_the_time_to_rest_agrees_to_eight_digits() -> None:
 
 
 def test_the_noise_of_the_film_is_as_stated() -> None:
-    """The film is made from known numbers: chi^2 is within three standard deviations of its 31
-    degrees of freedom, and each fitted number within two of its true value."""
+    """The film is computed from known numbers. chi^2 is within three standard deviations of 31, its
+    degrees of freedom, and each fitted number is within two standard errors of its true value."""
     t, *tracks = course.film().values()
     noise = np.random.default_rng(2).normal(0, NOISE, (3, t.size))
     thrown: Any = Given("10.1").but(**THROWN)
@@ -104,7 +105,7 @@ def test_marks_state_which_impacts_were_used(
 def test_tables_of_impacts_without_an_answer_are_rejected(
     kept: str, task: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Rows of zeros, no rows, or a NaN are refused with a sentence; a single row has an answer."""
+    """Rows of zeros, no rows and NaNs are rejected with a message. A single row has an answer."""
     rows = np.vstack(course.measured_impacts()).T
     table = {"zero": 0 * rows, "none": rows[:0], "unknown": rows * np.nan, "one": rows[1:2]}[kept]
     path, names = tmp_path / f"{kept}.csv", ",".join(IMPACTS)

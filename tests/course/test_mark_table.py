@@ -14,7 +14,7 @@ def table(*rows: str, head: str = HEAD) -> StringIO:
     return StringIO("\n".join((head, *rows)))
 
 
-def test_a_class_is_marked_line_by_line() -> None:
+def test_a_table_of_answers_is_marked_line_by_line() -> None:
     """Answers are right or have one or two known mistakes. Lines that cannot be read are listed by
     number, and all others are marked. The last answer to a task counts."""
     right, wrong = answer("3.2", (), 7), answer("3.2", ("sign", "inertia"), 8)
@@ -37,7 +37,7 @@ def test_a_class_is_marked_line_by_line() -> None:
 
 
 def test_lines_with_too_many_fields_or_without_a_name_are_refused() -> None:
-    """A decimal comma without quotes is a field too many; empty fields at the end are not."""
+    """A decimal comma without quotes gives a field too many. Empty fields at the end do not."""
     right = answer("3.1", (), 7)
     rows = (
         "A,7,3.1,19,16",
@@ -60,8 +60,7 @@ def test_lines_with_too_many_fields_or_without_a_name_are_refused() -> None:
 
 @pytest.mark.parametrize("mark", [",", ";", "\t"])
 def test_tables_of_spreadsheets_are_read(mark: str, tmp_path: Path) -> None:
-    """Spreadsheets write other separators, decimal commas, minus signs (U+2212) and byte order
-    marks."""
+    """Spreadsheets write other separators, decimal commas, U+2212 signs and byte order marks."""
     text = f"{answer('3.2', (), 7):.4f}".replace("-", "−").replace(".", ",")
     rows = ["Answer", "note", " Task", "seed", "student"], [f'"{text}"', "x", "3.2", "7", '"A, B"']
     content = "\r\n".join(mark.join(row) for row in rows).encode("utf-8-sig")

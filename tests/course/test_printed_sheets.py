@@ -1,4 +1,4 @@
-"""The printed sheets contain the tasks, and the numbers in the text of sheet 7 are right."""
+"""The printed sheets agree with the package, and the numbers in their text are right."""
 
 import math
 import re
@@ -15,7 +15,7 @@ FOLDER = ROOT / "docs/course"
 TASK = re.compile(r"\*\*(\d+\.\d)\*\* (−?\d+\.?\d*)")
 
 
-def test_the_sheets_contain_the_tasks() -> None:
+def test_sheets_without_a_seed_equal_the_pages_of_the_docs() -> None:
     for number, path in enumerate(made_by("course")["SHEETS"], 1):
         assert course.sheet(number).markdown == path.read_text(encoding="utf-8"), path.name
 
@@ -39,7 +39,7 @@ def test_the_teachers_page_has_right_answers() -> None:
 
 
 def test_the_marks_name_the_usual_mistakes_of_the_teachers_page() -> None:
-    """Each number after "Often", up to the end of its item, and each after a semicolon."""
+    """The usual wrong answers of an item follow the word Often, or a semicolon after it."""
     text = (FOLDER / "teacher.md").read_text(encoding="utf-8")
     items = re.findall(r"^\* \*\*(\d+\.\d)\*\*(.*?)(?=^\*|^#|\Z)", text, re.MULTILINE | re.DOTALL)
     shown = re.compile(r"(?:^|;)\s+\+?(−?\d+\.?\d*)")
@@ -50,7 +50,7 @@ def test_the_marks_name_the_usual_mistakes_of_the_teachers_page() -> None:
         assert course.mark(number, float(wrong)).mistake not in ("none", "other"), (number, wrong)
 
 
-def test_friction_behind_the_tip_points_as_sheet_3_states() -> None:
+def test_friction_behind_the_tip_reverses_at_the_speed_that_sheet_3_states() -> None:
     """Just behind the tip the sign of F = m (h omega_dot + h' omega^2) changes at that speed."""
     text = (FOLDER / "03_normal_and_friction_force.md").read_text(encoding="utf-8")
     shown = re.search(r"body ([\d.]+) rad/s \(([\d.]+) rad/s when flat\)", text)
@@ -66,7 +66,7 @@ def test_friction_behind_the_tip_points_as_sheet_3_states() -> None:
 
 def test_the_example_of_sheet_7_is_right() -> None:
     """The contact slips until v = 0 and then sticks. Compression ends at u = 0. The end of
-    restitution follows from the works, which are areas in the diagram of u over the impulse."""
+    restitution follows from the work, which is an area in the diagram of u over the impulse."""
     hit: Any = Given("7.4", x_dot=0.4, z_dot=-2.0, omega=0.0, theta=0.25, mass=1.5)
     v, u, tangential, normal, coupling = response(hit, hit)
     stop = v / (0.3 * tangential - coupling)
@@ -97,7 +97,7 @@ def test_the_example_of_sheet_7_is_right() -> None:
 
 
 def test_the_gap_of_sheet_7_closes_no_faster_than_stated() -> None:
-    """The slope of h is at most a - b. At most ten steps of gap / c reach the first contact."""
+    """The slope of h is at most a - b. Ten steps of gap / c are enough to reach the contact."""
     fall: Any = Given("7.2")
     assert np.max(np.abs(fall.at(np.linspace(0.0, math.pi, 3143))[1])) <= fall.a - fall.b
     latest = math.sqrt(2 * (fall.z - fall.b) / fall.gravity)

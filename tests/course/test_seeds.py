@@ -1,4 +1,4 @@
-"""A seed gives each student the same tasks with other numbers, and the answers get right marks."""
+"""A seed gives each student the same tasks with other numbers, and answers are marked correctly."""
 
 import math
 import re
@@ -18,7 +18,7 @@ SLOW = ("3.5", "6.4", "8.4", "8.5")  # slow to compute; test_course.py tests the
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_answers_are_marked_for_the_numbers_of_a_seed(seed: int) -> None:
-    """A right answer has the sign of the printed one and gets all points; a mistake costs half."""
+    """Right answers have the printed sign and get all points. A wrong sign costs half of them."""
     for number, task in tasks_of(seed).items():
         if number in SLOW or (number in FILMED and seed != SEEDS[1]):
             continue
@@ -36,7 +36,7 @@ def test_answers_are_marked_for_the_numbers_of_a_seed(seed: int) -> None:
             assert "angle" in course.mark(number, forgotten, seed=seed).mistake, number
 
 
-def test_the_points_of_each_sheet_are_ten() -> None:
+def test_the_points_of_each_sheet_add_up_to_ten() -> None:
     points = Counter[str]()
     for number, task in tasks_of(7).items():
         points[number.partition(".")[0]] += task.points
@@ -63,8 +63,7 @@ def test_numbers_of_a_seed_stay_near_the_printed_ones_and_keep_equalities() -> N
 
 
 def test_the_slip_in_task_7_4_ends_during_the_impact_for_each_seed() -> None:
-    """At the end of the slip, sticking needs no more friction than is available. The slip ends
-    before the impact does."""
+    """The slip ends before the impact does, and then friction is large enough for sticking."""
     for seed in range(50):
         hit = Given("7.4", seed).landed()
         _, _, tangential, _, coupling = response(hit, hit)
@@ -75,9 +74,9 @@ def test_the_slip_in_task_7_4_ends_during_the_impact_for_each_seed() -> None:
         assert abs(along) < hit.friction * up
 
 
-def test_sticking_does_not_fit_a_film() -> None:
-    """Friction without an upper bound raises chi^2 by more than 16, four standard deviations, for
-    each seed, so that the film determines friction. The rival is fitted with friction 10."""
+def test_an_impact_that_sticks_does_not_fit_the_film_of_any_seed() -> None:
+    """With a friction of 10, which prevents slip, chi^2 is larger by more than 16, four standard
+    deviations. Therefore the film determines friction."""
     for seed in range(0, 200, 8):
         t, *tracks = course.film(seed).values()
         best, _ = film_fit(seed)
@@ -93,7 +92,7 @@ def test_sticking_does_not_fit_a_film() -> None:
 
 
 @pytest.mark.parametrize("seed", [1, 7])
-def test_a_film_of_a_seed_slips_throughout_one_impact(seed: int) -> None:
+def test_the_filmed_body_slips_throughout_its_only_impact(seed: int) -> None:
     """An estimate by hand is possible: the slip keeps its sign during the impact, and at least
     three frames follow it. chi^2 is within four standard deviations of its expected value."""
     known, _ = film_fit(seed)

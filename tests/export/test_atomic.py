@@ -77,7 +77,7 @@ def test_a_vanished_temporary_file_is_an_error(old: Path) -> None:
     assert old.read_bytes() == OLD
 
 
-def test_a_kill_leaves_the_old_file(old: Path) -> None:
+def test_a_killed_process_leaves_the_old_file(old: Path) -> None:
     program = """
         import os, signal, sys
         from rolling_ellipse._motion.export.atomic import replacing
@@ -116,7 +116,7 @@ def test_every_writer_leaves_the_old_file_if_the_disk_is_full(name: str, tmp_pat
 
 
 def test_a_picture_without_a_suffix_gets_the_usual_one(tmp_path: Path) -> None:
-    """The suffix is that of matplotlib, unless the format is given."""
+    """Without a format, matplotlib's default suffix is added. Otherwise the name is unchanged."""
     shown = rl.plot_phase(MOTION)
     shown.savefig(tmp_path / "one")
     shown.savefig(tmp_path / "two", format="svg")

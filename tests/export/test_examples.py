@@ -1,4 +1,4 @@
-"""`examples` writes the packaged notebooks, without outputs, and tables."""
+"""`examples` writes the packaged tables, and the packaged notebooks without their outputs."""
 
 import os
 from pathlib import Path
@@ -11,7 +11,7 @@ from rolling_ellipse import _core
 from rolling_ellipse.__main__ import main
 
 
-def test_examples_equal_those_of_the_sources(tmp_path: Path) -> None:
+def test_examples_equal_their_sources(tmp_path: Path) -> None:
     """tests/project/test_notebooks.py runs the notebooks."""
     assert main(["examples", str(tmp_path / "new")]) == 0
     for source, written in {"notebooks": "*.ipynb", "reference": "reference/*.csv"}.items():
@@ -29,7 +29,7 @@ def test_examples_equal_those_of_the_sources(tmp_path: Path) -> None:
 
 def test_examples_are_not_written_through_links(tmp_path: Path) -> None:
     """Links to an equal file or to a folder, and a file or a pipe in place of a folder, are
-    refused; benchmark/test_result_files.py tests the same writer on other links and files."""
+    refused. benchmark/test_result_files.py tests the same function on other links and files."""
     away, empty = tmp_path / "away", tmp_path / "empty"
     rl.examples(away)
     empty.mkdir()

@@ -1,4 +1,4 @@
-"""Damaged files of trajectories are rejected by name; a failed save leaves the old file."""
+"""Damaged trajectory files raise errors that name them. A failed save leaves the old file."""
 
 import copy
 import dataclasses
@@ -87,7 +87,7 @@ def test_damage_is_rejected_or_harmless(motions: Motions, contents: Contents, pa
 
 
 @each_model
-def test_an_undamaged_file_is_read(
+def test_an_undamaged_file_is_read_back_unchanged(
     name: str, motions: Motions, contents: Contents, path: Path
 ) -> None:
     path.write_bytes(put_together(*taken_apart(contents[name])))
@@ -98,7 +98,7 @@ def test_an_undamaged_file_is_read(
 
 
 def places(part: Any, road: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Keys and indices that lead to every value, and to every part that contains values."""
+    """Paths of keys and indices to every value, and to every dictionary or list."""
     yield road
     if isinstance(part, (dict, list)):
         for key in part if isinstance(part, dict) else range(len(part)):
@@ -128,7 +128,8 @@ WRONG_VALUES: dict[str, Any] = {
 
 @each_model
 def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) -> None:
-    """Each value in the JSON is replaced by others. A file that is accepted is saved unchanged."""
+    """Each value in the JSON is replaced by each wrong value. If accepted, it is saved
+    unchanged."""
     about, arrays = taken_apart(contents[name])
     taken = set()
     about["events"] = about["events"][:1]  # the other events have the same form

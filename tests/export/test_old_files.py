@@ -1,6 +1,6 @@
-"""Files from before bodies had rolling resistance, or motions had blows, stay readable.
+"""Files written before bodies had rolling resistance, or motions had blows, can still be read.
 
-Files without rolling resistance have schema 4 or an equally old one: a folder, a race, answers to a
+Files without rolling resistance have schema 4 or are as old: a folder, a race, answers to a
 problem, and pickles. Files without blows have schema 5 and `before_blows` in their names. The tests
 of the player read an old link.
 """
@@ -42,7 +42,7 @@ def test_an_old_folder_is_read_as_scenes_without_rolling_resistance() -> None:
     assert first.t.tolist() == [0.0, 0.5, 1.0]
 
 
-def test_motions_of_a_version_without_blows_are_read_with_the_effects_of_their_impacts(
+def test_motions_from_before_blows_are_read_with_the_effects_of_impacts(
     tmp_path: Path,
 ) -> None:
     scene = rl.Scene(2.0, 1.0, theta=0.5, z=2.5, friction=0.3, restitution=0.5, omega=-1.0, mass=3)
@@ -58,7 +58,7 @@ def test_motions_of_a_version_without_blows_are_read_with_the_effects_of_their_i
             impulses.append(its.mass * (becomes.z_dot - was.z_dot))
             assert becomes.reaction_z == impulses[-1] > 0 and becomes.free_omega == was.omega
             lost = event.energy_before - event.energy_after
-            assert becomes.energy_lost == pytest.approx(lost, abs=1e-12)  # energies are 100 J
+            assert becomes.energy_lost == pytest.approx(lost, abs=1e-12)  # energies are about 100 J
     first = len(alone.events)
     assert stored.arrays("events")["reaction_z"].tolist() == impulses[first:]
     alone.save(tmp_path / "new.npz")
@@ -78,8 +78,8 @@ def test_old_pickles_are_read_as_scenes_without_rolling_resistance() -> None:
     assert motion.sol(0.3).theta == rl.simulate(rl.scenes.report, [0.3]).theta
 
 
-def test_old_answers_are_scored_and_old_facts_of_a_problem_have_not_changed() -> None:
-    """The answers come from this package; they are right to within a few roundings."""
+def test_old_answers_are_scored_and_their_problem_is_unchanged() -> None:
+    """The answers come from this package, and are right to within a few rounding errors."""
     name, folder = "hit.drop_slip_e", OLD / "answers"
     (score,) = (each for each in rl.benchmark.score(folder) if each.answer != "not supported")
     assert score.problem == name and score.passed and score.over_condition < 1e-15

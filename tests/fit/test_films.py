@@ -1,4 +1,4 @@
-"""A fit estimates the noise of a film, and reports if a scene or a misreading explains the film."""
+"""A fit estimates the noise, and reports whether a scene or a misreading explains the film."""
 
 import math
 from typing import Any
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from judge_films import EXAMPLE, FREE, GUESS, KINDS, SIGMA, TIMES, WRONG, noisy
 from rolling_ellipse import Fit, Scene, fit_motion, simulate
-from rolling_ellipse._verbs.films.judgement import neighbours  # its effect on a fit is random
+from rolling_ellipse._verbs.films.judgement import neighbours  # fits show it only on average
 
 TRACKS = ("x", "z", "theta")
 
@@ -62,9 +62,10 @@ def test_unknowns_reduce_the_degrees_of_freedom_of_a_track() -> None:
 
 
 def test_outliers_do_not_inflate_the_noise() -> None:
-    """The median residual of n numbers gives sigma to 1.17/sqrt(n) [Rousseeuw, Croux, JASA 88
-    (1993) 1273], and 5 % of outliers, of one sign, add a fifteenth. The bound is four standard
-    deviations of the mean of three tracks. The median without its factor is a third lower."""
+    """The median residual of n numbers gives sigma with a relative error of 1.17/sqrt(n)
+    [Rousseeuw, Croux, JASA 88 (1993) 1273], and 5 % of outliers, of one sign, add a fifteenth. The
+    bound is four standard deviations of the mean of three tracks. Without its factor of 1.48, the
+    median is a third lower."""
     t = np.linspace(0.00125, 0.4, 320)
     tracks = film(3, t)
     for name in TRACKS:
@@ -77,7 +78,8 @@ def test_outliers_do_not_inflate_the_noise() -> None:
 
 @pytest.mark.parametrize("seed", range(len(KINDS)))
 def test_correct_films_raise_no_alarm(seed: int) -> None:
-    """T of a correct film exceeds 3.5 in at most one of 4000 tracks: in one of 300 runs here."""
+    """T, the measure of correlated residuals, exceeds 3.5 in at most one of 4000 tracks of correct
+    films, and therefore in one of 300 runs of this test."""
     row = judge_films.right(seed)
     assert not row["alarm"] and row["T"] < 3.5
     assert all(abs(off) < 5 for off in row["off"].values())

@@ -1,4 +1,4 @@
-"""Fits to films made with known parameters and noise recover them, with honest errors."""
+"""Fits to synthetic films recover the parameters of the films, with realistic errors."""
 
 import math
 import sys
@@ -32,7 +32,7 @@ def value_of(scene: Scene, name: str) -> float:
 
 
 def off(fit: Fit, scene: Scene, names: Any) -> np.ndarray:
-    """Fitted minus true parameters over their errors; no error is NaN or 0."""
+    """Fitted minus true parameters, divided by their errors, none of which may be NaN or 0."""
     errors = np.array([fit.errors[name] for name in names])
     assert list(fit.errors) == list(names) and np.all(errors > 0)
     return np.array([value_of(fit.scene, n) - value_of(scene, n) for n in names]) / errors
@@ -49,10 +49,11 @@ OUTLIERS["z"][5::20] -= 0.05
 UNEVEN = np.sort(np.random.default_rng(2).uniform(0, 0.45, 90))
 
 
-def test_fits_of_twelve_films_recover_their_parameters_with_honest_errors() -> None:
-    """chi2 has the mean n, its degrees of freedom, and the variance 2n; the bound is 5 standard
-    deviations. Of m normal numbers 0.68 m are within 1; the bound is 4 standard deviations of
-    sqrt(0.22 m). With m = 48, more than one is beyond 3 with a probability of 0.8 %."""
+def test_fits_of_twelve_films_recover_their_parameters_with_realistic_errors() -> None:
+    """chi2 has the mean n, its degrees of freedom, and the variance 2n. The bound is 5 standard
+    deviations. Of m normal deviates, 0.68 m are below 1 in magnitude, with a standard deviation of
+    sqrt(0.22 m). The bound is 4 times this deviation. For m = 48, more than one exceeds 3 with a
+    probability of 0.8 %."""
     chi2, count, pulls = 0.0, 0, []
     for seed in range(12):
         rng = np.random.default_rng(seed)
@@ -86,7 +87,7 @@ def test_fits_of_twelve_films_recover_their_parameters_with_honest_errors() -> N
 def test_fits_of_realistic_films_recover_their_parameters(
     film: dict[str, Any], how: dict[str, Any]
 ) -> None:
-    """A normal number is beyond 4 in one of 16 000 cases."""
+    """A normal deviate exceeds 4 in one of 16 000 cases."""
     fit = fit_motion(**film, scene=GUESS, free=FREE, **({"sigma": SIGMA} | how))
     assert np.all(np.abs(off(fit, DROP, FREE)) < 4) and fit.errors["restitution"] < 0.02
     assert "not fit" not in fit.message
@@ -121,8 +122,8 @@ def test_parameters_at_their_bounds_are_fitted(changes: dict[str, float]) -> Non
 
 def test_an_undetermined_parameter_keeps_its_guess() -> None:
     """A film without an impact does not determine restitution, a film of a body at rest does not
-    determine friction, and no film determines the mass; points on the line of a blow are
-    equivalent; half turns of theta stay those of the scene."""
+    determine friction, and no film determines the mass. All points on the line of a blow are
+    equivalent. The fitted theta keeps the half turns of the guess."""
     blow = Scene(friction=0.5, impulse=Impulse(jx=0.3, jz=-0.1, dx=-0.01, dz=0.02), **BODY)
     for scene, free, lost in (
         (ROLL, ("theta", "restitution"), ["restitution"]),
@@ -134,7 +135,7 @@ def test_an_undetermined_parameter_keeps_its_guess() -> None:
         assert [name for name, error in fit.errors.items() if math.isinf(error)] == lost
         assert f"cannot determine {', '.join(lost)}" in fit.message
         assert not np.isnan(fit.covariance).any()
-        if len(lost) == 1:  # of dx and dz the film determines only a sum
+        if len(lost) == 1:  # the film determines only a sum of dx and dz
             kept = value_of(scene, lost[0])
             assert value_of(fit.scene, lost[0]) == pytest.approx(kept, abs=1e-8)
     turned = DROP.replace(theta=0.5 + 3 * math.pi)
@@ -162,7 +163,6 @@ def test_a_fit_without_scipy_says_how_to_install_it(monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("start", [0.0, 0.4])
 def test_angles_alone_determine_a_rolling_motion(start: float) -> None:
-    """Angles alone, as from an equation of motion, give the centre of a rolling body."""
     t = np.linspace(start, 1.0, 4000)
     motion = simulate(ROLL.replace(theta=start, x=7.0), t, model="rolling")
     mine = Trajectory.from_arrays(motion.t, theta=motion.theta, scene=motion.scene)

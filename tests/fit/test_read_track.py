@@ -51,8 +51,8 @@ def test_a_data_frame_a_mapping_and_a_file_give_the_same_track(tmp_path: Path) -
         assert np.allclose([t, x], [ROWS["t"], ROWS["x"]], atol=1e-6) and np.isnan(theta).all()
 
 
-def test_units_and_directions_are_the_stated_ones() -> None:
-    """Times follow from frame numbers or rows, heights from pixels that count downwards."""
+def test_units_and_directions_are_converted_as_stated() -> None:
+    """Times follow from frame numbers or row numbers, and heights from pixels counted downwards."""
     table = {"n": [3, 4, 6], "x": [0, 1, 2], "y": [5, 4, 3], "deg": [10.0, 20.0, 40.0]}
     t, x, z, theta = read_track(
         table, t="n", x="x", z="y", theta="deg", fps=50, y_up=False, degrees=True, scale=0.1
@@ -67,7 +67,7 @@ def test_units_and_directions_are_the_stated_ones() -> None:
 
 @pytest.mark.parametrize(("period", "rate"), [(math.pi, 30.0), (2 * math.pi, 40.0)])
 def test_angles_are_unwrapped_at_the_ends_of_their_range(period: float, rate: float) -> None:
-    """Angles of fitted ellipses cover half a turn, angles of points a whole turn, with gaps."""
+    """Angles of fitted ellipses cover half a turn, and those of points a whole turn. One is NaN."""
     true = rate * T - 1.0
     wrapped = np.mod(true, period)
     wrapped[2] = math.nan
@@ -109,7 +109,7 @@ def test_a_scene_is_fitted_to_a_table_in_the_format_of_tracker() -> None:
 
 
 def test_a_scene_is_fitted_to_two_tracked_points() -> None:
-    """Pixels are 0.4 mm, guessed as 1 mm; the ground is 500 pixels below the corner."""
+    """A pixel is 0.4 mm, but is assumed to be 1 mm. The ground is 500 pixels below the corner."""
     points = ("x1", "y1", "x2", "y2")
     track = read_track(
         DATA / "track_points.csv", t="frame", fps=60, points=points, y_up=False, scale=1e-3

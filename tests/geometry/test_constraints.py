@@ -1,6 +1,6 @@
 """The report's constraints at states that obey or violate them, and the coordinates of rolling.
 
-q = (x, z, theta, psi, r). The references are f1 ... f4 in mpmath, their rates by numerical
+q = (x, z, theta, psi, r). The references are f1 ... f4 in mpmath, their rates from numerical
 differentiation along q_dot, and gap and slip of the rotated outline. The bounds are a few ulps of
 the terms of each residual.
 """
@@ -19,7 +19,7 @@ from rolling_ellipse import constraints, kinematics
 
 Shape = tuple[float, float]
 NAMES = ["x", "z", "theta", "psi", "r"]
-# a circle, nearly a circle, generic, standing, thin
+# a circle, nearly a circle, generic, standing, thin, standing and thin
 THREE_AND_MORE = [(1.0, 1.0), (1.0 + 1e-8, 1.0), (2.0, 1.0), (0.7, 1.9), (2.0, 0.02), (0.03, 1.3)]
 STATES = 40
 
@@ -44,7 +44,7 @@ def residuals(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
 
 
 def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """Magnitudes of the terms of the seven residuals, summed."""
+    """Sum of the magnitudes of the terms of each of the seven residuals."""
     q, q_dot = y[:5], [abs(rate) for rate in y[5:]]
     x_dot, z_dot, omega, psi_dot, r_dot = q_dot
     _, _, theta, psi, r = q
@@ -64,7 +64,7 @@ def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
 
 
 def random_states(shape: Shape, count: int) -> np.ndarray:
-    """Random (q, q_dot) of the order of the size of the body; they violate all constraints."""
+    """Random (q, q_dot) of the order of the size of the body, which violate all constraints."""
     generator = np.random.default_rng(20)
     size = max(shape)
     spread = np.array([size, size, 3.0, 3.0, size, size, size, 1.0, 1.0, size])
@@ -86,9 +86,9 @@ def test_residuals_of_inconsistent_states_equal_their_definitions(shape: Shape) 
 
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
-def test_residual_gap_and_slip_agree_with_a_rotated_outline(shape: Shape) -> None:
-    """Gap and slip are the height of the lowest point of the outline and the velocity of the
-    material there, above and below the ground, to 8 ulps of the terms. psi and r have no effect."""
+def test_gap_and_slip_agree_with_a_rotated_outline(shape: Shape) -> None:
+    """Above and below the ground, gap and slip equal the height of the lowest point of the outline
+    and the velocity of the material there, to 8 ulps of the terms. x, psi and r have no effect."""
     a, b = map(mp.mpf, shape)
     for y in random_states(shape, 12):
         z, theta, x_dot, omega = (mp.mpf(y[k]) for k in (1, 2, 5, 7))
@@ -106,7 +106,7 @@ def test_residual_gap_and_slip_agree_with_a_rotated_outline(shape: Shape) -> Non
 
 
 def rolling_coordinates(theta: float, a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """Coordinates q of a rolling body at an angle."""
+    """Coordinates q of a rolling body at the angle theta."""
     h, slope, _ = oracles.geometry.support(theta, a, b)
     path = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
     return [path, h, mp.mpf(theta), theta + lead(theta, a, b), mp.hypot(h, slope)]

@@ -16,20 +16,20 @@ def digits() -> None:
 
 
 def boundary_length(t: object, a: float, b: float) -> mp.mpf:
-    """Length of the outline from t = 0 (the end of axis b) to (a sin t, b cos t), unwrapped."""
+    """Length of the outline from t = 0, the end of axis b, to (a sin t, b cos t), for any t."""
     return a * mp.ellipe(t, 1 - mp.mpf(b) ** 2 / mp.mpf(a) ** 2)
 
 
 def outline_parameter(theta: float, a: float, b: float) -> mp.mpf:
-    """tan t = (a/b) tan theta, on the branch that stays within pi/2 of theta."""
+    """The t with tan t = (a/b) tan theta, on the branch that stays within pi/2 of theta."""
     sine, cosine = mp.sin(theta), mp.cos(theta)
     return mp.mpf(theta) + mp.atan2((mp.mpf(a) - b) * sine * cosine, a * sine**2 + b * cosine**2)
 
 
 def test_the_oracle_support_equals_its_definition(shape: Shape) -> None:
-    """The support function is the height above the lowest point of the outline. The closed form of
-    h, h', h'' in the suite equals numerical derivatives in mpf, and in long double to 1e-13 of the
-    largest: h'' of a thin body near its flat position is 1e6 times its height."""
+    """The support function is the height of the centre above the lowest point of the outline. The
+    closed forms of h, h' and h'' in the suite equal numerical derivatives. In long double they
+    agree to 1e-13 of the largest of the three, since h'' of a flat thin body is 1e6 times h."""
     for theta in (0.0, 1e-3, 0.7, 1.5707, -2.2, 40.3):
         t = oracles.geometry.lowest_point(theta, *shape)
         right, up = oracles.geometry.boundary_point(t, mp.mpf(theta), *map(mp.mpf, shape))
@@ -62,14 +62,13 @@ def test_the_geometry_is_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -
     """Errors of sums and products of positive terms are relative, and a - b is exact near a circle.
     h and h' have at most 3 roundings each in sin, cos and the axes, and 3 more after them; rho =
     a^2 b^2 / h^3 has 3 times the error of h. The error of h'' = rho - h is relative to its terms.
-    The lengths are integrals of positive functions: an ulp comes from the angle, and a few from
-    the integral. (The difference arc - h' would lose (longer/shorter)^2 near the flat position.)
-    psi = theta + (an angle within pi/2) has the rounding of the sum and the relative error of the
-    angle."""
+    The lengths are integrals of positive functions: an ulp comes from the angle, and a few from the
+    integral. psi = theta + (an angle within pi/2) has the rounding of the sum and the relative
+    error of the angle."""
     a, b = map(mp.mpf, shape)
     for theta in angles:
         h, slope, curvature = oracles.geometry.height_slopes(theta, *shape)
-        factors = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h  # relative, also near 0
+        factors = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h  # accurate even near 0
         assert abs(factors - slope) <= mp.mpf(10) ** -25 * max(shape)
         distance, lead, radius = mp.hypot(h, factors), mp.atan2(factors, h), h + curvature
         outline = boundary_length(outline_parameter(theta, *shape), *shape)

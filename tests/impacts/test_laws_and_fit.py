@@ -1,4 +1,4 @@
-"""Single impacts by three laws agree with small steps along the impulse path; a fit recovers the
+"""Impacts under three laws agree with small steps along the impulse path, and a fit recovers the
 coefficients of a series of impacts."""
 
 import math
@@ -28,7 +28,7 @@ def approaching(count: int, seed: int = 1, **body: float) -> np.ndarray:
 
 
 def contact(state: np.ndarray, velocities: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Slip and gap rate of velocities at a state."""
+    """Slip and gap rate of velocities, at the angle of a state."""
     h, slope = (f(state[0], **BODY) for f in (geometry.support, geometry.support_slope))
     return velocities[0] - h * velocities[2], velocities[1] - slope * velocities[2]
 
@@ -49,7 +49,7 @@ PUSHES = 5000  # steps of the oracle; each impulse step is the approach speed ov
 def walked(law: Any, state: np.ndarray, friction: float, restitution: float) -> np.ndarray:
     """Velocities after many small normal impulses. Each is followed by the friction that stops the
     slip, limited by the cone, and by a check of whether restitution is complete. The oracle does
-    not distinguish cases. Newton's and Euler's laws, per kilogram, change the velocities."""
+    not distinguish cases. The velocities follow from Newton's and Euler's laws for unit mass."""
     theta, x_dot, z_dot, omega = state
     h, slope = (f(theta, **BODY) for f in (geometry.support, geometry.support_slope))
     first = u = contact(state, state[1:])[1]
@@ -82,8 +82,8 @@ def test_laws_agree_with_small_steps_along_the_impulse_path(
 ) -> None:
     """The oracle ends compression up to a step late, which restitution at most doubles, and ends
     restitution up to a step late. Friction makes a step up to sqrt(1 + mu^2) < 1.5 times as large,
-    and the body moves by up to sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times a step: three steps move it
-    by 2e-3 of the approach."""
+    and changes the velocities by up to sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times a step. Three steps
+    change them by 2e-3 of the approach speed."""
     for state in approaching(25, seed=3).T:
         found = after(state, law, friction, restitution)
         true = walked(law, state, friction, restitution)
@@ -123,7 +123,7 @@ def test_stronge_and_poisson_create_no_energy(law: Any, shape: tuple[float, floa
 
 
 def test_a_light_thin_fast_turning_body_conserves_energy() -> None:
-    """h' omega is up to 100 times z_dot: no velocity may be the difference of two such terms.
+    """h' omega can exceed 100 times z_dot, so no velocity may be a difference of two such terms.
 
     Three velocities have about ten roundings each, and the energy has twice as many.
     """
@@ -303,7 +303,7 @@ def test_the_fit_is_as_good_as_the_best_of_a_fine_grid(law: Any) -> None:
 
 
 def test_the_fit_to_the_course_data_finds_the_narrow_minimum() -> None:
-    """The best of a plain grid has a median of 0.0799 m/s at e = 0.5134, mu = 0.18."""
+    """The best point of a plain grid has a median error of 0.0799 m/s at e = 0.5134, mu = 0.18."""
     k2 = 0.7522033542556 * (0.035**2 + 0.025**2) / 4
     before, seen = course.measured_impacts()
     fitted = impacts.fit(list(before), list(seen), **DIE, gyration2=k2)

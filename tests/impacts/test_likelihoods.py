@@ -63,9 +63,8 @@ def test_evidence_and_covariance_agree_with_sums_over_the_whole_range(
     assert fitted.covariance == pytest.approx(true * np.outer(stretch, stretch), rel=0.02)
 
 
-def test_the_evidence_is_largest_for_the_law_of_the_impacts() -> None:
-    """Laws are compared with and without sigma. A fit of one law has the same numbers as in a fit
-    of all laws."""
+def test_the_evidence_is_largest_for_the_law_that_generated_the_impacts() -> None:
+    """Laws are compared with and without sigma. Fitting one law gives the same as fitting all."""
     sigmas: Any = (None, 0.05, None)
     for law, sigma in zip(impacts.LAWS, sigmas, strict=True):
         before, seen = series(law, 0.05, 60)

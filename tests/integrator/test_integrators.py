@@ -1,7 +1,7 @@
-"""Stepped rolling: orders, tolerances, peers, conserved quantities, endings and refusals.
+"""Rolling with step methods: order, tolerance, comparison with SciPy, symmetries and failures.
 
 The reference on level ground is the exact flow, which takes no steps and has an error of 1e-15
-(test_flow_reference.py compares it with 40 digits). The reference on a slope is the energy.
+(test_flow_reference.py compares it with 40 digits).
 """
 
 import itertools
@@ -17,7 +17,7 @@ from rolling_ellipse import IntegrationError, Mode, Scene, Status, Trajectory
 from scipy.integrate import solve_ivp
 from stability_laws import exponent
 
-# these motions solve the rolling equation even where no ground could exert their forces
+# these motions obey the rolling equation even where no ground could exert the required forces
 pytestmark = pytest.mark.filterwarnings("ignore:rolling is valid until")
 
 METHODS: dict[str, dict[str, Any]] = {
@@ -39,7 +39,7 @@ STANDING = Scene(0.7, 1.9, theta=1.2, omega=1.0)
 
 
 def roll(scene: Scene, t: Any, name: str, **how: Any) -> Trajectory:
-    """The motion by a method of METHODS, without an exception if it fails."""
+    """Simulate rolling with a method of METHODS. A failure raises no exception."""
     return rl.simulate(scene, t, model="rolling", raise_on_failure=False, **METHODS[name], **how)
 
 
@@ -48,7 +48,7 @@ def stepped(scene: Scene, t: Any, name: str, step: float = 0.02) -> Trajectory:
 
 
 def error(trajectory: Trajectory) -> np.ndarray:
-    """Error at each sample: the root of the squared errors of theta and omega/max(omega, 1)."""
+    """Error at each sample: sqrt(d_theta^2 + (d_omega/max(1, largest |omega|))^2)."""
     exact = rl.simulate(trajectory.scene, trajectory.t, method="exact")
     fastest = np.max(np.abs(exact.omega))
     off: np.ndarray = np.hypot(
@@ -118,7 +118,6 @@ TOLERANCES = 10.0 ** -np.arange(4, 12.5, 0.5)
 @pytest.mark.parametrize("scene", TOLERANCE_SCENES.values(), ids=TOLERANCE_SCENES)
 @pytest.mark.parametrize("name", PAIRS)
 def test_the_error_is_proportional_to_the_tolerance(name: str, scene: Scene) -> None:
-    """The largest error of a motion is proportional to the tolerance over eight decades."""
     largest = [np.max(error(roll(scene, 5.0, name, rtol=r, atol=r / 100))) for r in TOLERANCES]
     slope = exponent(TOLERANCES, largest)
     assert 0.8 <= slope <= 1.2, slope
@@ -163,9 +162,9 @@ def test_reversed_gauss_steps_return_to_the_start(name: str) -> None:
 @pytest.mark.parametrize("angle", [0.0, math.pi / 2], ids=["flat", "tip"])
 @pytest.mark.parametrize("name", IMPLICIT)
 def test_stages_are_solved_even_next_to_an_equilibrium(name: str, angle: float) -> None:
-    """Near such angles theta'' nearly vanishes, and so does half of each change in the iteration
-    for the stages. This must not end the iteration. If the start changes by d, the end changes by a
-    few d and by rounding."""
+    """Near an equilibrium theta'' nearly vanishes, so that the iteration for the stages hardly
+    changes half of its unknowns. This must not end the iteration. If the start changes by d, the
+    end changes by a few d and by rounding."""
     scene = Scene(2.0, 1.0, theta=angle, omega=3.2)
     reference = stepped(scene, [0.03], name, 0.03)
     for d in (1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5):
@@ -185,9 +184,9 @@ AWAY = {
 def test_added_half_turns_and_distant_starts_make_no_difference(
     name: str, theta: float, turned: float, moved: float, most: float
 ) -> None:
-    """The ellipse is the same after half a turn, whose double is off by up to 4e-16. With a fixed
-    step both motions have the same truncation errors, and the difference grows about a hundredfold.
-    Angles of 1e6 have an ulp of 1e-10, which adds to the error of a motion near 0."""
+    """The ellipse is the same after a half turn, but doubles of such angles are off by up to 4e-16.
+    With a fixed step both motions have the same truncation errors, and the difference grows about a
+    hundredfold. Angles of 1e6 have an ulp of 1e-10, which adds to the error of a motion near 0."""
     start = Scene(2.0, 1.0, theta=theta, omega=3.0)
     one = stepped(start, 3.0, name)
     other = stepped(replace(start, theta=theta + turned, x=moved), 3.0, name)
@@ -246,8 +245,7 @@ EXTREME = {
 @pytest.mark.parametrize("where", EXTREME)
 @each_method
 def test_scenes_of_extreme_scale_stay_accurate(name: str, where: str) -> None:
-    """The largest and smallest scenes are simulated in a thousand steps: even order 4 is then
-    within 1e-9 of the size of the motion."""
+    """In a thousand steps, even fourth order is accurate to 1e-9 of the size of the motion."""
     scene, time = EXTREME[where]
     trajectory = stepped(scene, np.linspace(0, time, 101), name, time / 1000)
     exact = rl.simulate(scene, trajectory.t, method="exact")
@@ -260,8 +258,7 @@ def test_scenes_of_extreme_scale_stay_accurate(name: str, where: str) -> None:
 @pytest.mark.parametrize("theta", [1e-8, 1e-100, 1e-155, 1e-160, 1e-165, 1e-200, 1e-300])
 @pytest.mark.parametrize("name", PAIRS)
 def test_a_motion_far_below_the_tolerance_takes_few_steps(name: str, theta: float) -> None:
-    """Errors may be so small that their squares underflow; each adds at most the tolerance of
-    1e-12."""
+    """Local errors may be so small that their squares underflow. Each adds at most 1e-12."""
     trajectory = roll(Scene(2.0, 1.0, theta=theta), 5.0, name, max_steps=200)
     assert trajectory.status is Status.COMPLETED
     assert np.max(error(trajectory)) <= 1e-10
@@ -312,7 +309,7 @@ def test_the_last_step_ends_exactly_at_the_end_time(
 
 @each_method
 def test_samples_do_not_depend_on_each_other(name: str) -> None:
-    """Every third of the samples from number 1001 on has the same bits without the others."""
+    """Every third sample from number 1001 on has the same bits if the other samples are omitted."""
     times = np.linspace(0, 5, 5001)
     trajectory = stepped(rl.scenes.rolling, times, name)
     third = stepped(rl.scenes.rolling, times[1001::3], name)

@@ -1,10 +1,10 @@
 """The coefficients of the integrators, rounded to doubles, satisfy their order conditions.
 
-Explicit methods are tested by rooted trees: a method has order p if, for every tree of up to p
+Explicit methods are tested with rooted trees: a method has order p if, for every tree of up to p
 nodes, phi(tree) = 1/gamma(tree) (J. C. Butcher; E. Hairer, S. P. Norsett, G. Wanner, Solving
-Ordinary Differential Equations I, II.2). Implicit methods are tested by the simplifying assumptions
-B, C, D (the same work, II.7 and IV.5). The arithmetic is long double, whose roundings are 2000
-times smaller.
+Ordinary Differential Equations I, II.2). Implicit methods are tested with the simplifying
+assumptions B, C, D (the same work, II.7 and IV.5). The arithmetic is long double, whose roundings
+are 2000 times smaller.
 """
 
 from collections.abc import Callable, Iterator
@@ -131,7 +131,8 @@ DENSE_ORDERS = {"rk4": 3, "dopri5": 4, "dop853": 7}
 
 def dense_weights(method: Explicit, s: float) -> tuple[Long, Long]:
     """b_j(s) of y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))), with F0 =
-    y(1) - y(0), F1 = h y'(0) - F0, F2 = 2 F0 - h (y'(0) + y'(1)); and the sums of their sizes."""
+    y(1) - y(0), F1 = h y'(0) - F0, F2 = 2 F0 - h (y'(0) + y'(1)); and the sums of the magnitudes of
+    their terms."""
     b = method.b
     before, after = np.eye(len(b), dtype=np.longdouble)[[0, method.stages]]
     terms = [b, before - b, 2 * b - before - after, *method.dense]
@@ -160,7 +161,7 @@ def check_explicit(name: str, **changed: Long) -> None:
 
 
 @pytest.mark.parametrize("name", EXPLICIT)
-def test_explicit_methods_are_explicit(name: str) -> None:
+def test_stages_of_explicit_methods_use_only_earlier_stages(name: str) -> None:
     method = explicit(name)
     assert np.all(np.triu(method.a) == 0)
     assert method.c[0] == 0 and method.c[method.stages] == 1
@@ -169,7 +170,6 @@ def test_explicit_methods_are_explicit(name: str) -> None:
 
 @pytest.mark.parametrize("name", EXPLICIT)
 def test_no_method_has_a_higher_order_than_stated(name: str) -> None:
-    """Each method violates a condition of the next order."""
     method = explicit(name)
     with pytest.raises(Violation):
         require_order(method.a, method.b, np.abs(method.b), method.order + 1)
@@ -181,7 +181,7 @@ def test_no_method_has_a_higher_order_than_stated(name: str) -> None:
 
 
 def test_the_error_estimate_of_dopri5_uses_its_fourth_order_weights() -> None:
-    """Weights by J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, Table 2."""
+    """From J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, Table 2."""
     lower = [5179 / 57600, 0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40]
     method = explicit("dopri5")
     require(method.error[0], method.b - lower, np.abs(method.b) + np.abs(lower), 1)

@@ -2,7 +2,7 @@
 
 The reference for matrix and drift differentiates f1 ... f4 of oracles/constraints.py numerically in
 mpmath. The solution of the linear system is substituted into the system, with the matrix in long
-double and its rate by complex steps. The reference for motions is exact rolling.
+double and its rate from complex steps. The reference for motions is exact rolling.
 """
 
 import math
@@ -161,7 +161,6 @@ def test_solutions_satisfy_the_system(shape: Shape, stabilization: str) -> None:
 
 @pytest.mark.parametrize("column", range(9))
 def test_back_substitution_detects_a_change_of_a_millionth(column: int) -> None:
-    """A change of 1e-6 in any acceleration or multiplier is detected at some state."""
     scene, how = Scene(2.0, 1.0), settings()
     q, q_dot = states((2.0, 1.0))
     q_ddot, multipliers = _core.multiplier_detail(scene.core, how.core, q, q_dot)
@@ -200,7 +199,7 @@ def test_rolling_states_accelerate_as_in_the_rolling_model(shape: Shape) -> None
 
 
 def rolling_direction(q: np.ndarray, a: float, b: float) -> Long:
-    """Allowed q_dot with theta_dot = 1."""
+    """The q_dot with theta_dot = 1 that obeys the constraints."""
     rows = matrix(q.astype(np.longdouble), a, b)
     direction = np.zeros(5, np.longdouble)
     direction[[0, 2, 3]] = -rows[0, 2], 1, -rows[3, 2]

@@ -1,4 +1,4 @@
-"""Each stabilization of the model "multipliers" at its knots and between them.
+"""Each stabilization of the model "multipliers" at the knots and between them.
 
 tests/stability covers the drift without stabilization and the cost of feedback.
 """
@@ -25,8 +25,8 @@ multipliers = partial(simulate, model="multipliers", max_steps=10_000_000)
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 def test_residuals_and_errors_rank_the_stabilizations() -> None:
     """From 10 half turns on, errors of theta are largest without stabilization, smaller with
-    feedback, again smaller with projection, and least if the energy is projected, too. Feedback
-    bounds the residuals; projection leaves only roundings."""
+    feedback, still smaller with projection, and smallest if the energy is projected, too. Feedback
+    bounds the residuals, and projection leaves only rounding errors."""
     exact = simulate(FED_BACK, kept("none").t)
     errors = {name: np.abs(kept(name).theta - exact.theta) for name in KEPT}
     gaps = {name: np.abs(kept(name).constraint_residuals().gap) for name in KEPT}
@@ -57,10 +57,10 @@ def test_the_path_reveals_an_error_that_no_residual_shows() -> None:
 @pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
 @pytest.mark.parametrize("scene", [ROTATION, ROCKING], ids=["rotation", "rocking"])
 def test_residuals_of_projection_stay_small_between_steps(scene: Scene, stabilization: Any) -> None:
-    """A motion of 10 half turns, by dop853 at rtol 1e-10, is sampled at 10 000 times between the
+    """A motion of 10 half turns, with dop853 at rtol 1e-10, is sampled at 10 000 times between the
     knots. It is within 1e-8 of exact rolling: theta grows to 30 in about 500 steps, whose relative
-    errors of 1e-10 have both signs. Residuals are at most 16 ulps of theta, and for velocities that
-    times psi_dot."""
+    errors of 1e-10 have both signs. Residuals are at most 16 ulps of theta, and residuals of
+    velocities psi_dot times as large."""
     times = np.sort(np.random.default_rng(1).uniform(0, 10 * half_turn(scene), 10_000))
     exact, moving = simulate(scene, times), multipliers(scene, times, stabilization=stabilization)
     for name in ("theta", "omega", "x", "psi"):
@@ -91,10 +91,10 @@ def test_energy_is_conserved_at_all_times(name: str) -> None:
 ggl = partial(multipliers, method="radau", stabilization="ggl")
 
 
-def test_the_index_2_system_has_order_5() -> None:
+def test_radau_has_order_5_for_the_index_2_system() -> None:
     """Radau IIA with three stages has order 5 for positions and velocities of index-2 systems (E.
-    Hairer, G. Wanner, Solving Ordinary Differential Equations II, VII.4). So have the multipliers
-    of a trajectory, which are computed from positions and velocities."""
+    Hairer, G. Wanner, Solving Ordinary Differential Equations II, VII.4). The multipliers of a
+    trajectory are computed from positions and velocities, and have the same order."""
     span, counts, errors = 1.37 * half_turn(FED_BACK), [40, 80, 160], []
     for count in counts:
         places = np.append(np.arange(count), np.arange(count) + 0.37)
@@ -109,7 +109,7 @@ def test_the_index_2_system_has_order_5() -> None:
 
 # the thin scene is left out: it passes its flat side, some (b/a)^2 wide, in less than a step
 @pytest.mark.parametrize("name", [n for n in SCENES if "far" not in n and n != "thin"])
-def test_index_2_leaves_residuals_of_rounding_size_everywhere(name: str) -> None:
+def test_index_2_residuals_are_of_rounding_size_everywhere(name: str) -> None:
     """At and between the knots, residuals stay below 64 ulps of the size of the body, times a/b for
     the effect of an ulp of psi on f3, and times a/b again for its effect on the rates."""
     scene = SCENES[name]
@@ -139,7 +139,7 @@ def test_a_step_that_cannot_be_solved_is_not_taken(name: str, step: float) -> No
 
 def test_index_2_is_accurate_far_from_zero() -> None:
     """A body that starts 15 915 turns away, at theta = 1e5 with an ulp of 1.5e-11, turns as far in
-    1 s as one near 0. The bound, 1e-10, is two such ulps times the growth of errors, e^1.7."""
+    1 s as one near 0. The bound of 1e-10 is such an ulp times the growth of errors, e^1.7."""
     near, far = (Scene(2.0, 1.0, theta=0.2 + k * 2 * math.pi, omega=3.2) for k in (0, 15_915))
     turned = [ggl(scene, [1.0], step=2.0**-6).theta[0] - scene.theta for scene in (near, far)]
     assert abs(turned[1] - turned[0]) <= 1e-10

@@ -231,8 +231,7 @@ def test_required_friction_is_just_enough_for_rocking_on_a_slope(seed: int) -> N
 @pytest.mark.parametrize("distance", [1.2, -0.4])
 @pytest.mark.parametrize("theta", [0.0, 0.3, -2.0])
 def test_a_blow_gives_the_requested_speed(theta: float, distance: float, before: float) -> None:
-    """After the blow the speed is the requested one, to within the rounding of the speeds before
-    and after the blow and of their difference."""
+    """The error is the rounding of the speeds before and after the blow and of their difference."""
     scene = replace(REPORT, theta=theta, omega=before, impulse=Impulse(jx=3.0))
     lead = float(rl.geometry.support_slope(theta, a=2.0, b=1.0))
     wanted = before + math.copysign(0.9, distance - lead)

@@ -131,7 +131,6 @@ def test_the_defaults_are_a_disc_on_earth_at_theta_0_with_unlimited_friction() -
 
 
 def test_the_number_of_workers_does_not_change_the_answers() -> None:
-    """20,000 scenes have the same answers for any number of workers."""
     sample, _ = random_sample(400, 21)
     big = Sample(*(np.tile(field, 50) for field in sample))
     big = big._replace(omega=big.omega * np.linspace(0.5, 1.5, big.omega.size))

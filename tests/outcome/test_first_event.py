@@ -1,4 +1,4 @@
-"""`classify` on random scenes agrees with a search along the angles, and with `certify`.
+"""`classify` on random scenes agrees with a search along the angles.
 
 The search evaluates Newton's law (oracles/rolling.py) in long double at thousands of angles: from
 the start, through the flat position if the body falls first, to the tip or the turning point.
@@ -93,7 +93,7 @@ def walk(sample: Sample) -> Walk:
     barrier = moving.gravity * np.abs(moving.a - moving.b)
     over = (moving.lift - barrier) / (moving.lift + barrier)
     rolls = least_slack(sample)
-    rests = (sample.omega == 0) & (2 * sample.theta / PI % 1 == 0)  # no start is only near an axis
+    rests = (sample.omega == 0) & (2 * sample.theta / PI % 1 == 0)  # starts near an axis are on it
     slips = (rolls < 0) | (sample.friction == 0)
     outcome = np.select(
         [rests, pressed < 0, slips, over < 0],
@@ -123,7 +123,7 @@ def walked() -> list[Walked]:
 
 
 def test_the_random_scenes_cover_every_case(walked: list[Walked]) -> None:
-    """The scenes include every outcome except jams, rising and falling starts, and rising bodies
+    """The scenes include rising and falling starts, all outcomes except jams, and rising bodies
     that would slip only at angles below their start."""
     counts: Counter[int] = Counter()
     beyond = up = down = 0

@@ -1,7 +1,8 @@
-"""Statements of the package about a start agree with each other.
+"""The package's statements about a start agree with each other.
 
 The statements are `outcome`, `classify`, `certify`, `required_friction`, `initial_state`, the model
-that "auto" selects, the first event and the first mode of the contact motion, and the sentences.
+that "auto" selects, the first event and the first mode of the contact motion, and the reasons in
+words.
 """
 
 import math

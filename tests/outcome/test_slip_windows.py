@@ -72,8 +72,7 @@ def is_inside(windows: Windows, omega: Any) -> Any:
 
 
 def test_windows_agree_with_samples_of_the_needed_friction() -> None:
-    """At 150 speeds, some only 1e-8 from an end, rolling needs too much friction only inside
-    windows."""
+    """At 150 speeds, some 1e-8 from an end, rolling lacks friction exactly inside the windows."""
     two = 0
     for body in bodies(60, 11, decades=1.5):
         windows = body.windows()
@@ -89,8 +88,7 @@ def test_windows_agree_with_samples_of_the_needed_friction() -> None:
 
 
 def test_windows_agree_with_certify_and_outcome() -> None:
-    """Rolling is proved invalid inside windows and valid outside, and undecided only near an end.
-    There are at most two windows, and the last is unbounded."""
+    """Rolling is invalid inside windows and valid outside. It is undecided only near an end."""
     rng = np.random.default_rng(12)
     two = 0
     for body in bodies(500, 13, decades=3):

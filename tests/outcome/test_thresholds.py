@@ -79,8 +79,8 @@ def test_the_defaults_are_a_disc_on_earth_with_unlimited_friction() -> None:
 @both
 @inertias
 def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str) -> None:
-    """Below the speed N stays positive during the whole turn, and just above it N does not. At that
-    speed N vanishes at the stated angle."""
+    """Below this speed N stays positive during the whole turn, but not just above it. At this speed
+    N vanishes at the stated angle."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     speed = found.contact_loss_speed
@@ -98,8 +98,7 @@ def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str)
 @inertias
 @pytest.mark.parametrize("friction", [0.01, 0.2, 0.5, 1.3, 10.0])
 def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: float) -> None:
-    """The slip speed is the smallest speed in the flat position at which rolling needs all of the
-    friction."""
+    """The slip speed is the least speed when flat at which rolling needs all of the friction."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2, friction=friction)
     speed = found.slip_speed
@@ -117,8 +116,7 @@ def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: 
 def test_friction_to_roll_over_is_the_largest_needed_at_the_separatrix(
     shape: Shape, kind: str
 ) -> None:
-    """The value is the largest friction needed at the energy of the barrier, or inf if N vanishes
-    first."""
+    """The value is inf if N vanishes first."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     rise = GRAVITY * np.array([abs(np.longdouble(shape[0]) - np.longdouble(shape[1]))])
@@ -194,7 +192,7 @@ def test_the_lift_off_speed_is_exact_with_infinite_friction(shape: Shape, kind: 
     long, short = mp.mpf(max(shape)), mp.mpf(min(shape))
 
     def state(angle: Any) -> tuple[Any, Any]:
-        """N/m of rolling with the energy that just reaches the tip, and E/m."""
+        """N/m of rolling and E/m, at the speed from which a free slide just reaches the tip."""
         sine, cosine = mp.sin(angle), mp.cos(angle)
         h = mp.sqrt((long * sine) ** 2 + (short * cosine) ** 2)
         slope = (long**2 - short**2) * sine * cosine / h
@@ -249,8 +247,7 @@ def test_the_lift_off_speed_is_exact_without_friction(shape: Shape, kind: str) -
 def test_only_faster_bodies_lift_off(shape: Shape, kind: str, friction: float) -> None:
     """A body slower than the threshold stays on the ground up to the tip; a faster one leaves it
     before the tip. This holds far from the threshold and close to it, where a change of 1e-10 in
-    speed moves the zero of c by some 1e-5 rad. test_contact_reference.py checks slides to 30
-    digits."""
+    speed moves the zero of c by some 1e-5 rad."""
     gyration2 = gyration2_of(shape, kind)
     speed = lift_off(shape, gyration2, friction)
     flat = flat_of(shape)
@@ -303,8 +300,8 @@ def test_uniform_discs_never_jam() -> None:
             assert thresholds(aspect, 1.0, friction=friction).jam_speeds == ()
 
 
-def test_a_body_slips_at_a_speed_no_higher_than_its_lift_off_speed() -> None:
-    """The slip speed is at most the lift-off speed; they are equal where slip starts on the tip."""
+def test_the_slip_speed_does_not_exceed_the_lift_off_speed() -> None:
+    """The two speeds are equal where slip starts on the tip."""
     rng = np.random.default_rng(41)
     for _ in range(150):
         long, short = 10 ** rng.uniform(0.05, 2.9), 10 ** rng.uniform(-1, 1)
@@ -331,8 +328,7 @@ def test_nearly_round_bodies_slip_and_lift_off_together_with_infinite_friction()
 
 
 def test_slow_fields_are_computed_on_first_access() -> None:
-    """Slow fields are stored on first access. Copies and comparisons do not depend on whether the
-    fields have been computed."""
+    """Copies and comparisons do not depend on whether slow fields have been computed."""
     found, again = thresholds(2.0, 1.0, friction=0.5), thresholds(2.0, 1.0, friction=0.5)
     assert "lift_off_speed" not in vars(found) and "jam_speeds" not in vars(found)
     assert found.lift_off_speed is found.lift_off_speed is vars(found)["lift_off_speed"]
