@@ -1,4 +1,4 @@
-"""Settings of the site; to build it: pip install '.[docs]', then python -m sphinx docs OUT."""
+"""Settings of the site. To build it: pip install '.[docs]', then python -m sphinx docs OUT."""
 
 import re
 from enum import EnumType
@@ -11,7 +11,7 @@ from typing import Any
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
-rmtree(HERE / "notebooks", ignore_errors=True)  # copies, which git ignores
+rmtree(HERE / "notebooks", ignore_errors=True)  # a copy that git ignores
 copytree(HERE.parent / "notebooks", HERE / "notebooks")
 run_path(str(HERE / "makers" / "chapters.py"))["split"](HERE / "notebooks" / "02_physics.ipynb")
 
@@ -34,8 +34,8 @@ copybutton_selector = (
     ".cell_input pre"
 )
 copybutton_prompt_text, copybutton_prompt_is_regexp = r">>> |\.\.\. ", True  # not copied
-default_role, autodoc_typehints = "py:obj", "none"  # backticks link; docstrings have the types
-autodoc_default_options = {  # xp is a module with a docstring of its own
+default_role, autodoc_typehints = "py:obj", "none"  # backticks link; docstrings state the types
+autodoc_default_options = {  # xp is a module, documented separately
     "members": True, "member-order": "bysource", "exclude-members": "xp"
 }  # fmt: skip
 numpydoc_show_class_members = False
@@ -57,13 +57,13 @@ def lead_to_copies(app: Sphinx, page: str, text: list[str]) -> None:
 
 
 def keep_pictures_in_the_site(app: Sphinx) -> None:
-    """Write the pictures of notebooks to a folder of the site, not to one beside it."""
+    """Write the pictures of notebooks to Sphinx's doctree folder, not to one beside the site."""
     folder = str(app.doctreedir / "pictures")
     app.env.mystnb_config = app.env.mystnb_config.copy(output_folder=folder)
 
 
 def name_modules(app: Sphinx, *of: Any) -> tuple[str, str] | None:
-    """Write a module that is a default value as its name, without the path of this machine."""
+    """Show a module that is a default value by its name, without the path of its file."""
     signature, returned = of[-2:]
     if "<module" not in (signature or ""):
         return None
@@ -87,6 +87,6 @@ def setup(app: Sphinx) -> None:
     files = Path(app.doctreedir) / "examples"  # files that examples write
     files.mkdir(parents=True, exist_ok=True)
     app.config.plot_working_directory = str(files)
-    live = Path(app.outdir) / "live"  # a page of its own, which the page `explore` shows
+    live = Path(app.outdir) / "live"  # a separate page, which the page `explore` shows in a frame
     live.mkdir(parents=True, exist_ok=True)
     run_path(str(HERE / "makers" / "live.py"))["write"](live / "index.html")

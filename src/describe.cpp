@@ -28,8 +28,8 @@ std::optional<Outcome> outcome_of(EventKind kind) {
     return {};
 }
 
-// What a body with rolling resistance does: how it starts, and then the first event that ends its
-// rolling or brings it to rest.
+// How a body with rolling resistance starts to move, and the first event that ends its rolling or
+// brings it to rest.
 Sentences course_of(const Scene& scene, const Solution& solution, const Start& start,
                     double begin) {
     Sentences found{{name(start.next.mode) + "_starts", {}}};
@@ -52,8 +52,7 @@ Sentences course_of(const Scene& scene, const Solution& solution, const Start& s
     return found;
 }
 
-// Explains why the motion differs from what the initial velocities suggest; empty if it does not
-// differ.
+// Explains why the motion differs from what the initial velocities suggest; empty if it does not.
 Sentences surprise(const Scene& scene, const Start& start) {
     const Continuation& next = start.next;
     if (next.may_fly) return {{"wedged", {}}};
@@ -81,7 +80,8 @@ Sentence proof_of(const Scene& scene, const Start& start, const Certificate& pro
     return {"proved", {{"N", *normal}, angle, {"ratio", *needed}}};
 }
 
-// The proof about rolling, the friction it assumes, and the friction that the blow needs.
+// The proof about rolling, the friction that it assumes, and the friction that the blow needs in
+// order not to cause slip.
 Sentences proof_of_rolling(const Scene& scene, const Start& start, const Certificate& proof) {
     Sentences found{proof_of(scene, start, proof)};
     if (std::isinf(scene.friction)) {
@@ -105,7 +105,7 @@ const Event* landing_of(const Solution& solution) {
     return nullptr;
 }
 
-// How and when the rolling that starts at the time `begin` ends, as far as the motion shows.
+// How and, if known, when the rolling that starts at the time `begin` ends.
 Sentence end_of_rolling(const Scene& scene, const Solution& solution, Outcome first, double begin) {
     const auto at = [](Outcome end, double t) { return Sentence{name(end) + "_at", {{"t", t}}}; };
     for (const Event& each : solution.motion.events) {

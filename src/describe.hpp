@@ -16,7 +16,7 @@ namespace rolling_ellipse {
 using Sentence = std::pair<std::string, std::vector<std::pair<const char*, double>>>;
 using Sentences = std::vector<Sentence>;
 
-// The start of a scene and the motion that the forces allow after it.
+// The initial state of a scene and the motion that the forces allow next.
 struct Start : InitialState {
     explicit Start(const Scene& scene);
 
@@ -26,19 +26,20 @@ struct Start : InitialState {
 };
 
 struct Description {
-    // The first outcome, after landing if the body starts in the air; empty if it never lands.
+    // The first outcome, after landing if the body starts in the air; empty if the body never lands
+    // or has rolling resistance.
     std::optional<Outcome> first;
     Sentences headline;  // what happens
-    Sentences reasons;   // the effect of the blow on the contact, then the cause of the motion
+    Sentences reasons;  // the effect of the blow on the contact, then why the body moves as it does
 };
 
 Description describe(const Scene& scene, const Solution& solution, const Checkpoint& checkpoint);
 
-// The first outcome for a body that starts in the air, after it lands; empty if it never lands.
+// The first outcome after the landing of a body that starts in the air; empty if it never lands.
 std::optional<Outcome> outcome_after_landing(const Scene& scene, const Solution& solution,
                                              const Checkpoint& checkpoint);
 
-// Describes the effect of the blow of the scene with this start, and how the body moves after it.
+// Describes the effect of the blow on the contact, and how the body starts to move.
 Sentences describe_start(const Scene& scene, const Start& start);
 
 // Describes what the certificate of the scene proves about rolling.

@@ -16,7 +16,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 // "auto" with the default method of the model.
 Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
-        const bool rolls = settings.method != Method::automatic;  // named methods compute rolling
+        const bool rolls = settings.method != Method::automatic;  // a named method implies rolling
         settings.model = rolls || validity == Validity::valid ? Model::rolling : Model::contact;
     }
     if (settings.method == Method::automatic) {
@@ -26,7 +26,8 @@ Settings chosen(Settings settings, Validity validity) {
     return settings;
 }
 
-// The initial state and, if the body rolls, its rolling motion, on level ground or on a slope.
+// The initial state and, if the body rolls without resistance, its motion on level ground or on a
+// slope.
 struct Beginning {
     InitialState initial;
     std::optional<RollingStart> rolling;
@@ -45,9 +46,9 @@ Beginning beginning(const Scene& scene) {
     return found;
 }
 
-// The end of valid rolling. On a slope, the law of the contact is examined up to the time `until`
-// or until the law is broken or at its limit. If rolling remains valid until then, the time of its
-// end is unknown (NaN).
+// The end of valid rolling. On a slope, the law of the contact is examined up to the time `until`,
+// or without this bound if the motion touches the limit of the law. If rolling remains valid up to
+// `until`, the time of its end is unknown (NaN).
 EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity) {
     if (from.rolling) return end_of_rolling(*from.rolling, scene.friction);
     if (!from.on_slope) return {Validity::no_proof};
@@ -58,8 +59,8 @@ EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity)
     return end;
 }
 
-// Whether the contact model computes the motion. That model proves each arc of rolling, only up to
-// the end time.
+// Whether the contact model computes the motion. That model proves each arc of rolling itself, and
+// only up to the end time.
 bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
     if (asked.model == Model::contact || asked.is_for_events()) return true;
     return from.on_slope && asked.model == Model::automatic && asked.method == Method::automatic &&
@@ -123,7 +124,7 @@ Integration<Motion> solve(const Scene& scene, const Beginning& from, const Setti
     return as_motion(scene, integrate_rolling(scene, start, settings, t_end, checkpoint));
 }
 
-// A message about blows after the end of a motion; empty if there are none.
+// A message about blows that the motion did not reach; empty if there are none.
 std::string what_is_missed(const std::vector<Blow>& blows, const std::vector<Event>& events) {
     const auto is_blow = [](const Event& event) { return event.kind == EventKind::blow; };
     const std::size_t struck = std::count_if(events.begin(), events.end(), is_blow);

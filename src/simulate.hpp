@@ -1,5 +1,5 @@
-// The whole computation: scene -> initial state -> certificate -> model -> solution; and messages
-// for users: why a start does not roll, why a motion stopped.
+// The whole computation: scene -> initial state -> certificate -> model -> solution. Also messages
+// for users: why a body does not roll at its start, and why a motion stopped.
 //
 // Throughout the sources, "physics (4)" means formula (4) of notebooks/02_physics.ipynb.
 #pragma once
@@ -17,13 +17,13 @@ namespace rolling_ellipse {
 struct Solution : Integration<Motion> {
     Model model = Model::rolling;
     Method method = Method::exact;
-    // Time at which the model stops being valid; NaN if only its validity up to the last
-    // requested time is known.
+    // Time at which the model stops being valid; NaN if all that is known is that it is valid up to
+    // the last requested time.
     double valid_until = infinity;
     std::string message = {};
 };
 
-// Numerical errors of an integrated motion in its energy and its constraints.
+// Numerical errors in the energy and the constraints of an integrated motion.
 struct Losses {
     // Largest change of the energy, divided by the largest kinetic + |potential| energy. Heights
     // are measured from the ground where the motion starts, so the origin of x has no effect.
@@ -39,21 +39,20 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
 
 // Simulates the multiplier model from coordinates and velocities that violate the constraints; such
-// a motion is never valid. The scene provides the body and the ground. (A start that satisfies the
-// constraints is given by the scene itself.)
+// a motion is never valid. The scene provides only the body and the ground.
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 
-// The time at which the model of a scene's solution stops being valid. Where necessary, the motion
-// is followed beyond the last requested time.
+// The time at which the model of a scene's solution stops being valid, found by following the
+// motion beyond the last requested time if necessary.
 double valid_until(const Scene& scene, const Solution& solution);
 
-// Numerical errors of energy and constraints in a motion computed in steps; empty for other
-// motions.
+// The numerical errors of a motion computed in steps; empty for other motions.
 std::optional<Losses> losses(const Solution& solution);
 
-// Duration of a full swing or of a full turn in the rolling motion that starts from the scene;
-// throws std::invalid_argument if the motion does not repeat.
+// The duration of a full swing or a full turn of the rolling motion that starts from the scene;
+// infinite at rest or, on level ground, if the body only approaches the tip. Throws
+// std::invalid_argument if the body does not roll at its start or runs downhill for ever.
 double period(const Scene& scene);
 
 // A number as text with six digits.

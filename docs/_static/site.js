@@ -1,11 +1,11 @@
-// Gives a frame the height that the page in it reports.
+// Gives a frame the height that its page reports.
 addEventListener("message", ({ data, source }) => {
   for (const frame of document.querySelectorAll("iframe"))
     if (frame.contentWindow === source && data?.rollingEllipse)
       frame.style.height = `${data.rollingEllipse.height}px`;
 });
 
-// Boxes that scroll can be scrolled with the keyboard, and the two sidebars have different names.
+// Makes overflowing boxes scrollable with the keyboard, and names the sidebars.
 addEventListener("DOMContentLoaded", () => {
   for (const box of document.querySelectorAll("pre, .table-wrapper, mjx-container[display=true]"))
     if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
@@ -16,7 +16,7 @@ addEventListener("DOMContentLoaded", () => {
       picture.replaceWith(link);
       link.append(picture);
     }
-  // Sphinx breaks long signatures into lists without terms, and its citation lists have no items
+  // Sphinx breaks long signatures into lists without terms; its citation lists have no items
   for (const part of document.querySelectorAll(".sig dl, .sig dd")) part.role = "presentation";
   for (const entry of document.querySelectorAll(".citation-list > .citation")) entry.role = "listitem";
   const names = { "sidebar-drawer": "Site", "toc-drawer": "On this page" };

@@ -1,7 +1,7 @@
-// The page with sliders and fields for every number of the scene. Each frame shows the motion for
+// The page with a slider and a field for every number of the scene. Each frame shows the motion for
 // the current numbers. Needs all modules of the player.
 
-const FULL = 6; // number of half turns from which colours have full strength
+const FULL = 6; // number of half turns at which colours reach full strength
 const SETTLED = 300; // time without changes after which the address is updated [ms]
 const NO_BLOW = { jx: 0, jz: 0, dx: 0, dz: 0 };
 const NOT_NAMED = [...Object.keys(NO_BLOW), "blows", "t"]; // not arguments of Scene
@@ -34,7 +34,7 @@ export class Workbench extends Explorer {
     this.renew();
   }
 
-  /** Set the numbers from an address, and the blows during the motion. */
+  /** Set the numbers and the blows during the motion to those of an address. */
   open({ blows = "", ...numbers }) {
     Object.assign(this, { earlier: [], since: 0 });
     Object.assign(this.given, known(numbers, this.film.own));
@@ -97,8 +97,8 @@ export class Workbench extends Explorer {
     return { name, unit, least, most, step, group, row, slider, field };
   }
 
-  /** Set new numbers; their motion is computed in the next frame. A change of the scene keeps the
-   * blows and goes back to the start. */
+  /** Set new numbers; their motion is computed in the next frame. A change of numbers other than
+   * those of the blow also goes back to the start, and keeps the blows. */
   change(numbers) {
     super.change(known(numbers, this.film.own));
     if (!Object.keys(numbers).some((name) => name in NO_BLOW)) this.seek(0);
@@ -115,7 +115,7 @@ export class Workbench extends Explorer {
     history.replaceState(null, "", this.address);
   }
 
-  /** Continue in another language, in a new host element. */
+  /** Rebuild the page in another language, in a new host element. */
   speak(language) {
     if (!(language in this.film.page.languages)) return;
     this.pause();
@@ -256,8 +256,8 @@ export class Workbench extends Explorer {
     return `${this.say(`in_${name}`)}${unit ? ` [${unit}]` : ""}`;
   }
 
-  /** The colour and opacity of a cell: by the number of half turns until the end, or one colour for
-   * motions that end early and one for scenes without a motion. */
+  /** The colour and opacity of a cell, from the number of half turns up to the end; motions that
+   * end early have a colour of their own, as do scenes without a motion. */
   colourOf(given) {
     const { film: { core }, colours } = this;
     try {
@@ -303,8 +303,8 @@ export class Workbench extends Explorer {
   }
 }
 
-/** The number in a text, with decimal comma or point: plain, a multiple of pi, infinity, or an
- * angle in degrees; NaN for other texts. */
+/** Read a number with decimal comma or point: a plain number, a multiple of pi, infinity, or an
+ * angle in degrees. Other texts are NaN. */
 function numberIn(text, unit = "") {
   const plain = text.trim().replace(",", ".").replace("−", "-").replace("π", "pi");
   if (/^(∞|inf|infinity)$/i.test(plain)) return Infinity;
@@ -319,8 +319,8 @@ function numberIn(text, unit = "") {
 const rounded = (value) => Number(value.toPrecision(4));
 const halfTurns = (theta, start) => Math.round((theta - start) / Math.PI) + 0;
 
-/** The page's numbers in an address, which has the names of Scene's arguments or, if it is older,
- * the names of the page. */
+/** The page's numbers from an address. Addresses use the names of Scene's arguments; older ones use
+ * those of the page. */
 function inAddress(hash, usual) {
   const linked = Object.fromEntries(new URLSearchParams(hash.slice(1)));
   if (!linked.a || !linked.b || "k" in linked) return linked;
@@ -334,7 +334,7 @@ function inAddress(hash, usual) {
     slip: x_dot === undefined ? 0 : x_dot - (flies ? 0 : h * omega) };
 }
 
-/** The given numbers, or texts of numbers, whose names the page has. */
+/** The given numbers that the page has. Texts are read as numbers; NaN is left out. */
 function known(numbers, own) {
   const pairs = Object.entries(numbers).filter(([name]) => name in own)
     .map(([name, value]) => [name, value === null ? null : numberIn(`${value}`)]);

@@ -11,9 +11,9 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr std::size_t usual_events = 16;  // room reserved at the first event
+constexpr std::size_t usual_events = 16;  // capacity reserved at the first event
 
-// The kind of the event that leads to the mode `next`; for sliding, the given kind.
+// The kind of the event that leads to the mode `next`; if this is sliding, the given kind.
 EventKind kind_of(Mode next, EventKind sliding) {
     if (next == Mode::rest) return EventKind::rest;
     if (next == Mode::rolling) return EventKind::stick;
@@ -36,7 +36,7 @@ InitialState start_after(const Scene& scene, EventKind kind, const State& before
 // omega^2, and hence all forces, as functions of the angle alone, so that half a turn or two
 // turning points are enough to decide. With friction, swings repeat as long as the slip keeps its
 // sign, and each full swing adds the same amount of slip. The slide therefore lasts for ever if the
-// slip throughout one full swing exceeds the largest slip up to the end of the first.
+// slip throughout one full swing exceeds the largest slip up to the end of the first full swing.
 class EndlessSlide {
   public:
     EndlessSlide(const Slide& slide, double friction)
@@ -105,7 +105,7 @@ class ContactRun {
     }
 
   private:
-    // Follows the motion up to a time [s], that of the next blow or of the end. A motion that has
+    // Follows the motion up to the time t [s] of the next blow or of the end. A motion that has
     // stopped is followed only through the remaining events of that instant.
     void follow_until(double t) {
         until_ = stops_ ? now() : std::min(t / units_.time, std::numeric_limits<double>::max());
@@ -138,8 +138,8 @@ class ContactRun {
         until_ = now();
     }
 
-    // Stops a motion that is known to last for ever. Its ending is `never`, unless the settings ask
-    // to stop once a motion is decided and this motion is.
+    // Stops a motion that is known to last for ever. Its ending is `never`, unless the motion is
+    // decided and the settings ask to stop then.
     void last_for_ever(bool is_decided) {
         if (!settings_.stop || stops_ || struck_ < settings_.blows.size()) return;
         if (!settings_.stop.decided || !is_decided) ending_ = Ending::never;
@@ -175,8 +175,8 @@ class ContactRun {
 
     Axes axes() const { return scene_.axes(); }
 
-    // Returns the angle from the nearest flat position or tip, near which a thin body is most
-    // sensitive to the angle, and exchanges the axes of the scene accordingly.
+    // Returns the angle from the nearest flat position or tip, where a thin body is most sensitive
+    // to its angle, and exchanges the axes of the scene after an odd number of quarter turns.
     DoubleDouble count_from_quarter(DoubleDouble theta) {
         if (const double rest = resolved(theta.high); rest != theta.high) {
             turned_ = turned_ + two_sum(theta.high, -rest) + theta.low;
@@ -191,8 +191,8 @@ class ContactRun {
         return angle.rest;
     }
 
-    // Continues from a state, with its angle measured from the nearest flat position or tip;
-    // returns that angle.
+    // Continues from a state after measuring its angle from the nearest flat position or tip;
+    // returns the new angle.
     DoubleDouble recount(const State& state, const DoubleDouble& theta) {
         const Scene before = scene_;
         const DoubleDouble angle = count_from_quarter(theta);
@@ -285,7 +285,7 @@ class ContactRun {
         continue_by_forces(false);
     }
 
-    // Slides, or rolls with resistance.
+    // Follows a slide, or rolling with resistance.
     void slide() {
         std::optional<double> rolls_by;
         if (next_.mode == Mode::rolling) rolls_by = friction_to_roll();
@@ -337,8 +337,8 @@ class ContactRun {
         return SlideStop::time_is_over;
     }
 
-    // Continues where rotation has stopped and rolling resistance reverses its couple or holds the
-    // body. Only a change of mode is an event.
+    // Continues after rotation has stopped, where rolling resistance reverses its couple or holds
+    // the body. Only a change of mode is an event.
     void turn_back() {
         const Continuation next = continuation(scene_, state_);
         const bool goes_on = next.mode == state_.mode && next.paradox == Painleve::determined;
@@ -413,7 +413,7 @@ class ContactRun {
         const auto [after, low, rebound] =
             collision(scene_, at, before, approach, Restitution::stronge, low_);
         state_ = after;
-        // A rebound slower than the rounding error of `speed_of_fall` counts as none.
+        // A rebound slower than the rounding error of `speed_of_fall` counts as no rebound.
         if (!(rebound > epsilon * speed_of_fall(scene_))) {
             state_.z_dot = at.dh * state_.omega;
             return continue_with(continuation(scene_, state_), EventKind::impact, before);
@@ -526,7 +526,7 @@ class ContactRun {
     const double rest_speed_;
     Motion motion_;
     std::optional<InitialState> start_;     // start of the motion to be followed next
-    std::optional<SlidePoint> sliding_on_;  // the end of a slide that another slide follows
+    std::optional<SlidePoint> sliding_on_;  // end of the last slide, if a slide follows it
     DoubleDouble turned_;                   // quarter turns subtracted from theta
     LowParts low_;                          // low parts of state_, preserved from impact to impact
     bool axes_exchanged_ = false;

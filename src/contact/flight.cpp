@@ -15,8 +15,8 @@ namespace {
 // 3e5.
 constexpr double largest_ratio = 0.9999;
 
-// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, by power series in 4 x^2, without
-// cancellation.
+// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, without cancellation, from power series in 4
+// x^2.
 struct BeyondSmall {
     double sine;
     double square;
@@ -56,8 +56,8 @@ class Gap {
         return s.z + t * (s.z_dot - 0.5 * flight_.gravity.into * t);
     }
 
-    // The gap, computed as its initial value plus its change so that it is accurate even for hops
-    // far lower than the body.
+    // The gap, computed as its initial value plus its change, which is accurate even for hops far
+    // lower than the body.
     double value(double t) const {
         const State& s = flight_.start;
         const double fallen = 0.5 * flight_.gravity.into * t;
@@ -74,11 +74,12 @@ class Gap {
         return s.z_dot - flight_.gravity.into * t - at(t).dh * s.omega;
     }
 
-    // The time of a contact, given the neighbouring doubles between which the gap closes. The
-    // height of the centre is then set to h. At the later time, this would always raise the body
-    // and thus add 1e-16 of its energy, so the time with the smaller gap is chosen. The later time
-    // is used if the body turns by more than 1e-8 between the two, since the gap then bends by a
-    // rounding error or more, or if the earlier time is the start of the flight.
+    // The time of a contact, one of the two neighbouring doubles between which the gap closes. At
+    // this time the height of the centre is set to h. Always choosing the later time would raise
+    // the body and add 1e-16 of its energy at each contact, so the time with the smaller gap is
+    // chosen. The later time is used only if the body turns by more than 1e-8 between the two
+    // times, since the gap then bends by a rounding error or more, or if the earlier time is the
+    // start of the flight.
     double closes(const Bracket& between) const {
         constexpr double small_turn = 1e-8;
         const auto [low, high] = between;
@@ -103,8 +104,8 @@ class Gap {
         return (flight_.gap_rate - fallen) - rise->slope * flight_.start.omega;
     }
 
-    // The time at which the centre falls to a height, which is at most the initial height if the
-    // centre starts downwards.
+    // The time at which the centre falls to a height. If the centre starts downwards, this height
+    // must not exceed its initial height.
     double falls_to(double height) const {
         const double drop = flight_.start.z - height;
         const double v = flight_.start.z_dot;
@@ -160,7 +161,7 @@ class Curvature {
             positive_root(flight.gravity.into / square(omega), view.short_axis * view.long_axis);
         if (omega == 0 || !(root < view.long_axis)) return;  // concave at all times
         const double turned = flight.start.omega > 0 ? view.sin : -view.sin;
-        const double phi = std::atan2(turned, view.cos);  // angle from flat, growing with time
+        const double phi = std::atan2(turned, view.cos);  // from the flat position, grows with time
         const double tip_side = std::sqrt((root - view.short_axis) * (root + view.short_axis));
         const double flat_side = std::sqrt((view.long_axis - root) * (view.long_axis + root));
         const double edge = std::atan2(tip_side, flat_side);
@@ -186,7 +187,7 @@ class Curvature {
         return {last.end, last.end + (convex ? convex_time_ : concave_time_), convex};
     }
 
-    // The interval that contains a given later time, cut to start at that time.
+    // The interval that contains the later time t, shortened to start at t.
     Interval around(Interval interval, double t) const {
         if (t < interval.end) return {t, interval.end, interval.convex};
         const double period = convex_time_ + concave_time_;
@@ -234,7 +235,7 @@ double first_touch(const Flight& flight, const Gap& gap) {
     // A body that leaves the ground by acceleration alone does so in a convex interval of the gap.
     if (leaves_slowly && !now.convex) {
         now = curvature.after(now);
-        // Unless that interval starts at once, the gap closes first and the body does not leave the
+        // Unless that interval starts at once, the gap closes before it, and the body stays on the
         // ground.
         if (!(gap.value(now.begin) >= -equal_ulps * epsilon * tall)) return 0.0;
     }
@@ -307,8 +308,7 @@ double speed_of_fall(const Scene& scene) {
 
 double rest_speed(const Scene& scene, const Units& units, const Settings& settings) {
     constexpr double small = 1e-6;
-    // Largest ratio of the rest speed to the speed of a fall; it bounds the relative error of the
-    // sum.
+    // Largest ratio of the rest speed to `speed_of_fall`; it bounds the relative error of the sum.
     constexpr double large = 1e-2;
     const double unit = speed_of_fall(scene);
     if (!settings.rest_speed) return small * unit;
@@ -322,9 +322,9 @@ double rest_speed(const Scene& scene, const Units& units, const Settings& settin
     return speed;
 }
 
-// Whether bounces may be summed with constant c and h'. The relative error is (their duration
-// divided by the time in which the body falls, or turns by b/a)^2; it must not exceed the ratio of
-// the rest speed to the speed of a fall.
+// Whether bounces may be summed with constant c and h'. The relative error is the square of their
+// duration over sqrt(b/g) or, if that is shorter, over the time in which the body turns by b/a,
+// with b the short semi-axis. It must not exceed the ratio of the rest speed to `speed_of_fall`.
 bool settles(const Scene& scene, double omega, const Bounce& first, double rest_speed) {
     const auto [rebound, ratio, c] = first;
     if (rebound > rest_speed || c <= 0 || !(ratio < largest_ratio)) return false;
@@ -334,8 +334,8 @@ bool settles(const Scene& scene, double omega, const Bounce& first, double rest_
     return 2 * rebound * rate <= longest * c * (1 - ratio);
 }
 
-// The sum of infinitely many bounces whose rebounds shrink by a constant ratio and which take a
-// finite time, physics (57). Bounces this small take place at one angle, with the initial c.
+// Sums bounces whose rebounds shrink like a geometric series and which end after a finite time,
+// physics (57). They are so small that c and h' keep their initial values.
 Settling settling(const Scene& scene, const State& start, const Bounce& first) {
     constexpr double negligible_share = 1e-12;  // of the first rebound; slower ones are ignored
     const Geometry at = geometry(scene.axes(), start.theta);

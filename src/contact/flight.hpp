@@ -19,14 +19,14 @@ struct Flight {
 
 State state_at(const Flight& flight, double t);
 
-// The state of a body in grazing contact, from the free flight that replaces this contact.
+// The state of a body in grazing contact, given the state of the free flight followed instead.
 State grazing(const Geometry& at, const State& free, Mode mode);
 
 // The height of the centre above which the body cannot touch the ground, however h is rounded.
 double most_height(const Axes& axes);
 
 // The first contact of a flight: the time from its start and, if the body has turned only a little,
-// the rate of the gap, which is then more accurate than the velocities. A body in contact at the
+// the rate of the gap, more accurate than the velocities would give it. A body in contact at the
 // start counts as leaving the ground, through its velocity or its acceleration.
 struct Landing {
     double after;
@@ -37,8 +37,8 @@ Landing touch_down(const Flight& flight);
 // The speed sqrt(g b) after a fall of half the short semi-axis b.
 double speed_of_fall(const Scene& scene);
 
-// The speed, in the given units, below which bounces may be summed. Throws std::invalid_argument if
-// the speed in the settings is too large.
+// The speed, in the given units, below which bounces may be summed instead of followed. Throws
+// std::invalid_argument if the speed in the settings is too large.
 double rest_speed(const Scene& scene, const Units& units, const Settings& settings);
 
 // A rebound: its speed, the ratio of this speed to the speed of approach, and the free acceleration

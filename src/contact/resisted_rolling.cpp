@@ -76,8 +76,8 @@ ROLLING_ELLIPSE_WIDE SlideSeries rolling_series(const SlidingBody& body, const S
             torque = u2 * *centre.torque - (p * ab2 + d * h * bend) * omega2;
         }
         if (k == 0) over_inertia = 1 / inertia;
-        // Coefficient k of a quotient, from the inner terms of the product of quotient and
-        // denominator and from coefficient k of the numerator and of the denominator.
+        // Coefficient k of a quotient, from coefficients k of its numerator and denominator and
+        // from the inner terms of the product quotient * denominator.
         const auto quotient = [&](int lane, double numerator, double denominator, double over) {
             return (k == 0 ? numerator : numerator - turns[lane] - denominator * by_turn[0][lane]) *
                    over;

@@ -16,7 +16,7 @@ struct RollingForces3 {
 };
 
 // The moment h g sin(alpha) - (h' + d) g cos(alpha) of gravity about the point where the normal
-// force acts, per mass, from an angle in double-double precision. Empty unless its terms all but
+// force acts, per mass, from an angle in double-double precision. Empty unless these terms all but
 // cancel, as in small swings about an equilibrium.
 std::optional<double> cancelled_moment(const SlidingBody& body, const Geometry& at,
                                        const DoubleDouble& angle);

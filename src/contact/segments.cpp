@@ -127,8 +127,8 @@ double whole_angle(const DoubleDouble& turned, double theta) {
     return turned.high == 0 ? theta : static_cast<double>(turned + theta);
 }
 
-// These functions convert a sample to SI units and to its total angle; the scene has the axes of
-// the segment's law.
+// These functions convert a sample to SI units and restore its total angle; the scene has the axes
+// of the segment's law.
 
 void complete(FlowSample& sample, const Motion& motion, const Scene&, const DoubleDouble& turned) {
     const Units& units = motion.units;

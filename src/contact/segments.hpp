@@ -31,7 +31,7 @@ struct Event {
     InitialState after;  // also the impulse of the ground at an impact or a blow
 };
 
-// A body whose state does not change: it is at rest, or it is stuck at an instant from which no
+// A body whose state does not change: it is at rest, or it is stuck in a state from which no
 // motion, or more than one motion, obeys the laws.
 using Standing = ContactSample;
 
@@ -39,7 +39,7 @@ using Standing = ContactSample;
 template <class Law>
 using Apart = std::shared_ptr<const Law>;
 
-// A stretch of the motion, from its start up to the next segment, and the law that it follows.
+// A part of a motion, from the time `begin` up to the next segment, and the law that it follows.
 struct Segment {
     double begin;
     std::variant<Apart<RollingFlow>, Apart<SlopeFlow>, SteppedRolling, SteppedMultipliers, Slide,
@@ -54,8 +54,8 @@ struct Motion {
     Scene scene;  // body and ground
     std::vector<Segment> segments;
     std::vector<Event> events;
-    std::vector<double> turns;  // times [s] at which the couple of rolling resistance changes
-    bool rests = false;         // true if the only law is one of rolling and the body is at rest
+    std::vector<double> turns;  // times [s] at which the couple of rolling resistance reverses
+    bool rests = false;         // true if the body is at rest although the law is one of rolling
 };
 
 // The law of a segment, whether stored in the segment itself or behind a pointer (Apart).
@@ -69,8 +69,8 @@ const Law& itself(const Apart<Law>& law) {
     return *law;
 }
 
-// The motion of a body in all its phases: it rolls, slides, flies, hits the ground and comes to
-// rest, each in a separate segment, joined by events (contact.cpp).
+// The motion of a body that rolls, slides, flies and rests in separate segments, joined by events
+// such as impacts (contact.cpp).
 Integration<Motion> integrate_contact(const Scene& scene, const InitialState& start,
                                       const Settings& settings, double t_end,
                                       const Checkpoint& checkpoint);
@@ -83,11 +83,11 @@ State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turne
 // A motion in SI units with a single segment of this law.
 Motion single(const Scene& scene, decltype(Segment::law) law);
 
-// Samples a motion. The times may be passed in several calls. If the `expected` total number of
-// times justifies a table, the table is built only once. A sample is a FlowSample (theta, omega,
-// x), a ContactSample (state and force) or a CoordinateState, in SI units; every segment provides
-// all three. A sample at the time of an event is the state just after the event. A motion without
-// segments has no samples.
+// Samples a motion. The times may be passed in several calls. A table for exact rolling is built
+// once if the `expected` total number of times justifies it. A sample is a FlowSample (theta,
+// omega, x), a ContactSample (state and force) or a CoordinateState, in SI units; every segment
+// provides all three. A sample at the time of an event is the state just after the event. A motion
+// without segments has no samples.
 class Sampler {
   public:
     Sampler(const Motion& motion, std::size_t expected);

@@ -40,8 +40,8 @@ bool is_finite(const SlidePoint& point) {
                        [](const DoubleDouble& each) { return std::isfinite(double(each)); });
 }
 
-// Powers of the reach of a piece, kept finite: a circle's reach may be huge, while its coefficients
-// are 0.
+// Powers of the reach of a piece, limited to finite numbers: the reach of a circle may be huge,
+// while its coefficients are 0.
 LongSeries powers_of(double reach) {
     LongSeries powers{1.0};
     for (int k = 0; k < long_order; ++k) {
@@ -51,8 +51,8 @@ LongSeries powers_of(double reach) {
 }
 
 // The first point, as a fraction of the reach, at which a series that must stay positive is
-// provably negative; coefficient(k) returns a value and the magnitude of the terms from which it
-// was computed.
+// provably negative. coefficient(k) returns a coefficient and the magnitude of the terms that were
+// added to compute it.
 template <class Coefficient>
 std::optional<double> first_end(const LongSeries& powers, const Coefficient& coefficient) {
     Tracked least = coefficient(0);  // a lower bound of the series
@@ -152,7 +152,7 @@ class SlideIntegration {
         reach_ = std::min(reach({&angle, &omega, &series.rolled, &series.pressure}), most);
         find_end(body, series);
         omega[0] = series.slip[0] = series.response[0] = x_dot[0] = 0.0;
-        SlidePiece& piece = slide_.pieces.emplace_back();  // built in place, since it is large
+        SlidePiece& piece = slide_.pieces.emplace_back();  // in place, since it is large
         piece.centre = from;
         piece.clock = clock();
         piece.unit = unit;
@@ -163,7 +163,7 @@ class SlideIntegration {
             reach_ = piece.reach;
         }
         SlidePoint next = moved(piece, reach_);
-        // The powers of a rate beyond about 1e100 overflow.
+        // The powers of rates beyond about 1e100 overflow.
         if (!is_finite(next)) {
             slide_.pieces.pop_back();
             return SlideStop::no_progress;
@@ -188,7 +188,7 @@ class SlideIntegration {
     // physics (66).
     void keep_energy() {
         if (slide_.body.ahead != 0) return;
-        constexpr double small = 0.25;      // energy terms relative to the largest kinetic energy
+        constexpr double small = 0.25;      // relative to the largest kinetic energy
         constexpr double rounding = 1e-12;  // a larger relative change is not due to rounding
         const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at_);
         const double kinetic = double(last_.energy + fallen);
@@ -203,8 +203,9 @@ class SlideIntegration {
         last_.slip = last_.slip + -at_.h * change;
     }
 
-    // Computes the slip from x_dot and h omega where both are smaller than the largest slip so far,
-    // since the slip, as a sum of changes, has the rounding errors of its largest value.
+    // Computes the slip as x_dot - h omega where |x_dot| + |h omega| is smaller than the largest
+    // slip so far. As a sum of changes, the slip would have the rounding errors of its largest
+    // value.
     void keep_slip() {
         const double rolled = at_.h * double(last_.omega);
         const double size = std::abs(double(last_.x_dot)) + std::abs(rolled);
@@ -216,8 +217,8 @@ class SlideIntegration {
 
     SlideClock clock() const { return scaled_response_ ? SlideClock::slowed : SlideClock::time; }
 
-    // The rate that determines the unit of time: 1 + the rate of turning + the rate at which the
-    // force changes B, if the latter is large. In units of this rate, no power overflows.
+    // The rate that determines the unit of time: 1 + |omega| + the rate at which the force changes
+    // B, if the latter is large. With this unit, no power overflows.
     double rate() const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);
@@ -310,8 +311,7 @@ class SlideIntegration {
     }
 
     // Moves the end of a piece to the point at which the forces, computed from the state, break the
-    // law. Near a tip of a thin body, and where the margin hardly falls, the series have lost
-    // digits.
+    // law. The series lose digits near the tip of a thin body and where the margin hardly falls.
     void refine_law_end(SlidePiece& piece) const {
         constexpr double rounding = 1e-6;  // a larger relative change is not due to rounding
         constexpr int corrections = 2;
@@ -365,7 +365,8 @@ class SlideIntegration {
                at_.dh * omega > 0;
     }
 
-    // The end of a slide at B = 0, where N = c/B instantly stops the slip or jams the body.
+    // The end of a slide at B = 0, where N = c/B instantly stops the slip or the rotation, or jams
+    // the body.
     SlideStop last_moment() {
         const double angle = double(last_.angle);
         const auto [stops, turns, omega, slip, x_dot, lasts] = rolling_ellipse::last_moment(
@@ -396,16 +397,15 @@ class SlideIntegration {
     double reach_ = 0.0;
     std::optional<End> end_;
     RollingForces3 rolling_forces_;
-    double law_side_ = 1.0;  // side of the friction at whose limit rolling ends
-    // True once c has vanished to within rounding but the body has stayed on the ground, as when a
+    double law_side_ = 1.0;  // `side` of the friction limit at which rolling ends
+    // True if c has vanished to within rounding and the body has stayed on the ground, as when a
     // slide starts near B = 0 under infinite friction. c then has the rounding errors of gravity
     // and h'' omega^2, too.
     bool grazes_ = false;
 };
 
-// The reading of the piece's clock at a time after the centre of the piece. The reading is at most
-// the reach, since the slip keeps its sign only up to there and the time of an event may be rounded
-// up.
+// The reading of the piece's clock at a time since the centre of the piece. It is limited to the
+// reach, beyond which the slip may change sign, since the time of an event may be rounded up.
 double clock_at(const SlidePiece& piece, double time) {
     time /= piece.unit;
     if (piece.clock == SlideClock::time) return std::min(time, piece.reach);

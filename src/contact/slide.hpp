@@ -1,7 +1,7 @@
 // Sliding to one side, and rolling with resistance, solved by power series. Half a swing takes some
 // twenty series, each accurate to double precision within its reach; samples use the same series.
-// The slide ends at the first root of a series, which is proved by the signs of Bernstein
-// coefficients rather than searched for by sampling.
+// The slide ends at the first root of a series; the signs of Bernstein coefficients prove that
+// there is no earlier one.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ struct SlidePoint {
     DoubleDouble energy;
 };
 
-// The motion from a point onwards. Its changes are power series in a clock that reads 0 at this
+// The motion from a point onwards: its changes as power series in a clock that reads 0 at this
 // point.
 struct SlidePiece {
     SlidePoint centre;
@@ -48,7 +48,7 @@ struct Slide {
     double x_base;
     SlidePoint last;  // end of the last piece
     std::vector<SlidePiece> pieces;
-    std::optional<double> rolls_by;  // if the body rolls instead: its friction coefficient
+    std::optional<double> rolls_by;  // set if the body rolls: its friction coefficient
 };
 
 // A slide at its start, with slip to the given side (0 without friction). If it follows another
@@ -84,9 +84,8 @@ State end_of(const Slide& slide);
 // The angle of the body at the last point of the slide, to full accuracy.
 DoubleDouble angle_at_end(const Slide& slide);
 
-// The angular velocity at the last point, where the slip has vanished. It is computed from x_dot =
-// h omega if x_dot was smaller than h omega during the slide and therefore has smaller rounding
-// errors.
+// The angular velocity at the last point, where the slip has vanished. It is computed as x_dot/h if
+// x_dot was smaller than h omega during the slide and therefore has smaller rounding errors.
 DoubleDouble omega_without_slip(const Slide& slide);
 
 // States and forces at n ascending times since the start.

@@ -92,9 +92,9 @@ double slowed_response_rate(const SlidingBody& body, const Geometry& at, double 
     return std::sqrt(std::abs(response_derivative(body, at) * c * spin(body, at)));
 }
 
-// In the last moment the impulse of N changes omega and slip in a fixed ratio, physics (54). At B =
-// 0 a unit of impulse adds 1/h' to omega; a formula for any B would have terms that all but cancel
-// for a body of small inertia.
+// The impulse of N changes omega and the slip in a fixed ratio, physics (54). At B = 0, a unit of
+// impulse adds 1/h' to omega; in a formula for any B, terms would all but cancel for a body of
+// small inertia.
 LastMoment last_moment(const SlidingBody& body, double angle, double omega, double slip) {
     const Geometry at = geometry(body.axes, angle);
     const double b_derivative = response_derivative(body, at);
@@ -113,8 +113,8 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
     const bool turns = !stops && impulse_to_turn < impulse_to_jam;
     const double omega_after = stops ? without_slip : turns ? 0.0 : without_c;
     const double slip_after = stops ? 0.0 : slip + slip_by_turning * (omega_after - omega);
-    // The moment lasts until B = 0 or until N = c/B has delivered the impulse. In a slide that
-    // starts with such a small B, the body may turn away from B = 0, or not turn at all.
+    // Lasts until B = 0 or until N = c/B has delivered the impulse. A body that starts to slide
+    // with such a small B may turn away from B = 0, or not turn at all.
     const double b_rate = b_derivative * omega;
     const double until_no_b = b_rate < 0 ? -b / b_rate : infinity;
     const double until_made = (stops ? impulse_to_stop : impulse_to_end) * b / c;
@@ -254,9 +254,9 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
 
 // The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52). A slide
 // with c < 0 and N = c/B > 0 is a second possible motion, besides flight, only if the body already
-// slips: without slip, N and F of rolling rule out a slip that starts to that side. A motion may
-// start in such a state, but no motion leads to it: a slide ends earlier, where c or B vanishes,
-// and an impact with B < 0 lasts until the slip stops.
+// slips; otherwise, N and F of rolling show that no slip can start to that side. A motion may start
+// in such a state, but none leads to it: a slide ends earlier, where c or B vanishes, and an impact
+// with B < 0 lasts until the slip stops.
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side,
                             bool slips = false) {
     const auto [c, b] = response(sliding_body(scene, at, omega, side), at, omega);
@@ -265,8 +265,8 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
 
-// Whether a start is the state in which a slide has jammed: B = 0 and c = 0 to within rounding and
-// an uncertainty `blur` of theta.
+// Whether the start is a state in which a slide jams: B = 0 and c = 0 to within rounding and an
+// uncertainty `blur` of theta.
 bool has_jammed(const Scene& scene, const State& state, const Geometry& at, double slip,
                 double blur) {
     constexpr double rounding = 1e-12;  // a slide ends where B is a tenth of this
@@ -294,11 +294,11 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
 }
 
 // Whether a contact that rolls at the limit of its law (|F| = mu N, or N = 0 with infinite
-// friction), to within rounding of the forces and an uncertainty `blur` of theta, breaks the law at
-// the next moment that can be distinguished from the present one despite rounding.
+// friction) is about to break it. The limit holds to within rounding and an uncertainty `blur` of
+// theta; the first change of the margin that exceeds its rounding error decides.
 bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
                  const ContactForce& force, double blur) {
-    constexpr double least_turn = 0x1p-20;  // turn from now to the next moment [rad]
+    constexpr double least_turn = 0x1p-20;  // angle of the first comparison [rad]
     constexpr double most_turn = 0x1p-8;
     const RollingEquation rolling(scene.body(), scene.slope);
     const GroundGravity gravity = scene.ground_gravity();
@@ -316,7 +316,7 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
         const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
         const double mean_pull = 0.5 * (pull + rolling.acceleration(later, 0.0, lever));
         const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * mean_pull * heading * turn;
-        if (!(later_omega2 > 0)) return false;  // it turns back earlier; the law hardly changes
+        if (!(later_omega2 > 0)) return false;  // it turns back earlier; the margin hardly changes
         const ContactForce next = rolling.force(scene.mass, later, std::sqrt(later_omega2), lever);
         const double side = side_of(next.friction);  // at the limit, also sign(F) unless F = 0
         const double now = law_margin(force, scene.friction, side);
@@ -327,8 +327,8 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
     return false;
 }
 
-// The continuation of a state. For a weightless body, the angle of `state` and `at` may be that of
-// an instant later, but `slip` is the current slip.
+// The continuation of a state. For a weightless body, `state` and `at` may have the angle of an
+// instant later, but `slip` is the current slip.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
                              double slip, bool may_roll, double blur) {
     if (scene.friction == 0) {
@@ -341,7 +341,7 @@ Continuation continuation_at(const Scene& scene, const State& state, const Geome
     const bool held = law_margin(force, scene.friction) >= 0 || at_the_limit(force, scene.friction);
     if (may_roll && held && state.omega == 0 && scene.rolling_resistance > 0 &&
         is_held(scene, at)) {
-        return {Mode::rest};  // at the limit of friction, which the couple does not change
+        return {Mode::rest};  // at the limit of friction, which does not depend on the couple
     }
     const bool lasts = blur == 0 || !breaks_away(scene, state, at, force, blur);
     if (may_roll && force.normal > 0 && held && lasts) {

@@ -1,5 +1,5 @@
 // Sliding with Coulomb friction to one side: the contact force, its effects, and the motion as
-// power series about a state; also the mode in which a body on the ground continues.
+// power series about a state. Also the mode in which a body on the ground continues.
 #pragma once
 
 #include <optional>
@@ -26,8 +26,8 @@ struct SlidingBody {
     double ahead;
     bool is_held;
 
-    // False for infinite friction, since the force then stays moderate near the tip although B is
-    // small there, and for a body that is kept from turning, whose B is constant.
+    // False for infinite friction, with which the force stays moderate near the tip although B is
+    // small there, and for a body that is kept from turning, since its B is constant.
     bool may_jam() const { return normal_share != 0 && !is_held; }
 
     // The lever arm of the contact force about the centre; a positive arm turns the body backwards.
@@ -64,15 +64,15 @@ ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double o
 // The rate of change of the slip velocity, physics (51).
 double slip_rate(const SlidingBody& body, const Geometry& at, double omega);
 
-// The rate at which the contact force changes B by turning the body, measured on a clock that slows
-// down as B decreases: the square root of what the force adds to the second derivative of log B. In
-// real time the rate is 1/B times as large.
+// The rate at which the contact force changes B by turning the body: the square root of its
+// contribution to the second derivative of log B. This is the rate on a clock that slows down as B
+// decreases; in real time it is 1/B times as large.
 double slowed_response_rate(const SlidingBody& body, const Geometry& at, double c);
 
-// The end of a slide that has reached B = 0 with c > 0, physics (54): within a moment, N = c/B
-// makes the slip vanish (`stops`), makes the rotation vanish (`turns`: the couple of rolling
-// resistance then reverses) or makes c vanish (the body jams). Stores the angular velocity, the
-// slip and the velocity of the centre after that moment, and its duration.
+// The end of a slide that has reached B = 0 with c > 0, physics (54): in an instant, N = c/B makes
+// the slip vanish (`stops`), the rotation (`turns`: the couple of rolling resistance then reverses)
+// or c (the body jams). Stores the angular velocity, the slip and the velocity of the centre after
+// this instant, and its tiny duration.
 struct LastMoment {
     bool stops;
     bool turns;
@@ -85,8 +85,9 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
 
 enum class SlideClock { time, slowed };
 
-// The centre of the series: sine and cosine of the angle, velocities, and the response V of a slide
-// or the torque of rolling, if known more accurately than computed from the sine and cosine.
+// The centre of the series: sine and cosine of the angle, and velocities. The response V of a
+// slide, or the torque of rolling, is set if it is known more accurately than the sine and cosine
+// give it.
 struct SlideCentre {
     double sin;
     double cos;
@@ -137,28 +138,28 @@ struct Continuation {
     Mode mode;
     double side = 0.0;  // sign of the slip
     Painleve paradox = Painleve::determined;
-    // Set for infinite friction and c = 0 to within rounding: N is then mere rounding error, and
-    // near the tip so is B. The body moves freely until it has turned far enough for N and B to be
+    // Set for infinite friction if c = 0 to within rounding: N, and near the tip B, is then mere
+    // rounding error. The body moves freely until it has turned far enough for N and B to be
     // resolved.
     bool grazes = false;
     bool may_fly = false;     // the body rolls, but flight would obey the laws as well
     bool has_jammed = false;  // the start is the state in which a slide has jammed
 };
 
-inline constexpr double turn_of_grazing = 0x1p-22;  // turn treated as free flight [rad]
+inline constexpr double turn_of_grazing = 0x1p-22;  // angle turned in free flight [rad]
 
 // The mode that the forces allow. Without slip, the body rolls if `may_roll` is set and the forces
 // allow it; otherwise it starts to slide, or leaves the ground if it is no longer pressed against
 // it. On slopes the forces may allow both rolling and flight (c < 0 < N): the body then rolls, just
-// as if it had arrived rolling. At a start, c = 0 and |F| = mu N count as true if they hold to
-// within rounding and the effect of an uncertainty `blur` of theta [rad]; the next moment then
+// as if it had arrived rolling. At a start, c = 0 and |F| = mu N need to hold only to within
+// rounding and the effect of an uncertainty `blur` of theta [rad]; the motion just afterwards then
 // decides.
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true,
                           double blur = 0.0);
 
-// The state of a scene with its angle replaced by that for new axes, which changes h and h' only by
-// rounding. The gap is preserved and, in contact, so are its rate and the slip: a contact remains a
-// contact, and a body without slip remains without slip.
+// The state with its angle replaced by `theta`, which describes the same position with new axes, so
+// that h and h' change only by rounding. The gap is preserved and, in contact, its rate and the
+// slip: a contact remains a contact, and a body without slip remains without slip.
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);
 
 // How a body continues from its start, which may be in the air.

@@ -21,7 +21,7 @@ Position position(const Shape& shape, double sin2, double cos2) {
             shape.c2 * sin2 / (at.h + shape.short_axis)};
 }
 
-// The energy above the flat position, H - S, of a motion with omega^2 at a position: physics (26).
+// The energy H - S above the flat position, given omega^2 at a position: physics (26).
 double energy_over_flat(const Position& at, double omega2) {
     return 0.5 * at.inertia() * omega2 + at.over_flat;
 }
@@ -51,8 +51,8 @@ Grip grip(const Shape& shape, const Position& at, double friction) {
     return {energy_over_flat(at, least), energy_over_flat(at, most)};
 }
 
-// A range of positions in terms of ln tan phi: near the flat position the forces vary on a scale of
-// (b/a)^2, near the tip on a scale of 1/mu.
+// A range of positions in terms of ln tan phi, since the forces vary on a scale of (b/a)^2 near the
+// flat position and on a scale of 1/mu near the tip.
 struct Scan {
     double first;
     double last;
@@ -90,7 +90,7 @@ double least_place(const Scan& scan, const Function& f) {
     return refined(best, scan.step(), f);
 }
 
-// A body with a given coefficient of friction that rolls with any energy.
+// A rolling body and its coefficient of friction, without a given energy.
 struct Rolling {
     const Shape& shape;
     double friction;
@@ -111,7 +111,8 @@ struct Rolling {
         return law(force_polynomials(range(energy))) == Sign::positive;
     }
 
-    // The position, as ln tan phi, that needs the most friction, if that is provably too much.
+    // The position, as ln tan phi, that needs the most friction; empty unless this is provably too
+    // much.
     std::optional<double> broken_place(double energy) const {
         const EnergyRange heights = range(energy);
         const ForcePolynomials forces = force_polynomials(heights);
@@ -123,11 +124,10 @@ struct Rolling {
 
 // Relative rounding error of energies and of the polynomials of a motion.
 constexpr double rounding = 16 * epsilon;
-// Limit on the corrections of an extremum that the scan has missed; more than two are rarely
-// needed.
+// Limit on the number of corrections of an extremum that the scan has missed; two usually suffice.
 constexpr int most_corrections = 50;
 
-// The least upper energy of all positions.
+// The least of the upper energies of all positions.
 Onset upper_onset(const Rolling& body) {
     const auto upper_at = [&](double log_tan) {
         return grip(body.shape, position(body.shape, log_tan), body.friction).upper;
@@ -186,8 +186,8 @@ std::optional<SlipWindow> window_of_rest(const Rolling& body) {
 
 }  // namespace
 
-// The least energy at which contact is lost, H = h - r/p with r = normal_at_rest,
-// p = normal_moving, lies at a root of h' p^2 - r' p + r p'.
+// The least energy at which contact is lost, H = h - r/p with r = normal_at_rest, p =
+// normal_moving, lies at a root of h' p^2 - r' p + r p', where ' is d/dx.
 Onset contact_loss(const Shape& shape) {
     const EnergyRange range = separatrix_range(shape);
     const ForcePolynomials p = force_polynomials(range);

@@ -3,13 +3,13 @@
 // Energies are given as heights H - S above the flat position, lengths in units of the long
 // semi-axis L, omega^2 in units of g/L. At a position of height h the law is linear in omega^2, and
 // hence in H = h + D omega^2/2, for either sign of friction, physics (47): N > 0 holds below one
-// energy, |F| < mu N between two. Therefore contact is lost above some energy, and friction is too
-// small
-//   * at all energies above the least upper energy of all positions;
-//   * from the lowest position at which a body at rest slips, mu (k^2 + h^2) < h |h'|, up to the
-//     largest of the lower energies. These positions form one interval, physics (48); with less
-//     energy the body passes the position of that largest lower energy too slowly, or stops in the
-//     interval before it.
+// energy, |F| < mu N between a lower and an upper energy. Therefore contact is lost above some
+// energy, and friction is too small
+//   * at all energies above the least of the upper energies of all positions;
+//   * from the energy of the lowest position at which a body at rest slips, mu (k^2 + h^2) <
+//     h |h'|, up to the largest of the lower energies. Such positions form one interval, physics
+//     (48); with less energy the body passes the position of this largest lower energy too slowly,
+//     or stops before it within the interval.
 // Hence there are one or two energy windows with slip, and the last one has no upper end.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace rolling_ellipse {
 
-// The least value of a quantity (energy or friction) at which a law breaks, and the angle there.
+// The least energy or friction at which a law breaks, and the angle at which it breaks.
 struct Onset {
     double value = infinity;
     std::optional<double> angle;

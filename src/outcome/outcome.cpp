@@ -13,17 +13,16 @@ namespace {
 // The alternative named in the error message for a body with rolling resistance.
 constexpr const char* instead = "the events of simulate show how the body moves with it";
 
-// A slip after rolling never starts inside the Painleve region. Let |F| exceed mu N > 0, with the
-// side s = -sign F. Since c = Gnn N + Gtn F holds in rolling, too, physics (50), the response of
-// sliding B = Gnn - mu s Gtn is positive: if s Gtn <= 0, it is a sum of positive terms; otherwise
-// it follows from c <= N B with c > 0, which N > 0 implies (N D = c (k^2 + h^2) - omega^2 h h'^2
-// per mass). Where N <= 0 and c > 0, a body without slip has a side on which B > 0. Hence `jams`
-// never follows rolling. Nor does a body that rolls on level ground leave the ground before it
-// slips: c is positive where N vanishes, so that the body starts to slide even with infinite
-// friction.
+// `jams` never follows rolling, since slip after rolling never starts with B <= 0. Let |F| exceed
+// mu N > 0, so that the body starts to slide to the side s = -sign F. Since c = Gnn N + Gtn F holds
+// in rolling, too, physics (50), B = Gnn - mu s Gtn is positive: if s Gtn <= 0, it is a sum of
+// positive terms; otherwise B > 0 follows from c <= N B with c > 0, which N > 0 implies (N D = c
+// (k^2 + h^2) - omega^2 h h'^2 per mass). Where N <= 0 and c > 0, a body without slip has a side on
+// which B > 0. Nor does a body that rolls on level ground leave the ground before it slips: where N
+// vanishes, c is positive, and the body starts to slide even with infinite friction.
 
 // The outcome for a body that rolls up to the top: it passes the tip or turns back; `edge` if
-// rounding hides which of the two.
+// rounding hides which.
 Outcome at_the_top(const RollingStart& from) {
     const FlatView& at = from.view;
     const EnergyHeight& height = from.height;
@@ -33,7 +32,7 @@ Outcome at_the_top(const RollingStart& from) {
     return over == Sign::positive ? Outcome::rolls_over : Outcome::rocks;
 }
 
-// The polynomial of a law of rolling, on the part of the range of heights from x to the top.
+// A polynomial of the law of rolling, on the range of heights from x to the top.
 template <int N>
 Bernstein<N> from_place(const Polynomial<N>& law, double x) {
     const Bernstein<N> whole = bernstein(law);
@@ -49,7 +48,7 @@ Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
     return next == Mode::flight ? Outcome::loses_contact : Outcome::slips;
 }
 
-// The outcome within half a turn for a rolling circle, which has no tip.
+// The outcome for a rolling circle, which has no tip, within half a turn.
 Outcome outcome_of_circle(const SlopeFlow& flow) {
     const double uphill = flow.start.omega;
     if (uphill >= 0) return Outcome::rolls_over;
@@ -109,8 +108,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     if (pressed == Sign::undecided) return Outcome::edge;
     if (friction == 0) return Outcome::slips;
 
-    // A rising body passes only the heights above its start. A falling body, or one that starts at
-    // the tip (within rounding), passes through all heights before it reaches the top.
+    // A rising body passes only the heights above its start. A body that falls, or starts at the
+    // tip to within rounding, passes through all heights before it reaches the top.
     const EnergyRange range = energy_range(from);
     const ForcePolynomials forces = force_polynomials(range);
     const bool rises = at.sin * from.omega > 0 && at.cos > equal_ulps * epsilon;

@@ -1,5 +1,5 @@
 // Outcomes: the first event after a blow or during rolling. Also the blow or the friction that
-// yields a given outcome, and the thresholds between the outcomes on level ground.
+// yields a given outcome, and the thresholds between outcomes on level ground.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ enum class Outcome : std::int8_t {
     rolls_over,     // the body passes the tip before anything else happens
     slips,          // the contact slides
     loses_contact,  // the body leaves the ground, or is in the air
-    jams,           // the contact jams; this does not follow rolling, see outcome/outcome.cpp
+    jams,           // the contact jams; never follows rolling, see outcome/outcome.cpp
     edge,           // rounding hides which of two outcomes occurs
 };
 
@@ -25,8 +25,8 @@ template <>
 inline constexpr std::array names<Outcome>{"RESTS",         "ROCKS", "ROLLS_OVER", "SLIPS",
                                            "LOSES_CONTACT", "JAMS",  "EDGE"};
 
-// The outcome for a body that rolls (or rests) on level ground with the given angle and angular
-// velocity, from the signs of polynomials alone.
+// The outcome for a body that rolls or rests on level ground, given its angle and angular velocity,
+// from the signs of polynomials alone.
 Outcome classify(const Body& body, double friction, double theta, double omega);
 
 // The first event after the blow of a scene. On level ground, no integration is needed. On a slope,
@@ -39,16 +39,16 @@ Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);
 // if the lever is so small that no valid impulse suffices.
 double press_to(const Scene& scene, double distance, double omega);
 
-// The angular velocity at the angle of the scene with which a body that rolls on level ground just
-// reaches the tip: physics (26).
+// The angular velocity that just carries a body rolling on level ground from the angle of the scene
+// to the tip: physics (26).
 double speed_to_the_tip(const Scene& scene);
 
 // The least friction coefficient with which neither the blow nor the rolling after it ever causes
 // slip, regardless of the friction of the scene; infinite if no finite coefficient suffices.
 double required_friction(const Scene& scene);
 
-// The least friction coefficient with which a body can lie still on the slope of the scene,
-// regardless of the start of the scene; infinite if the slope is too steep for any equilibrium.
+// The least friction coefficient with which the body can lie still on the slope at some angle;
+// infinite if the slope is too steep for any equilibrium.
 double friction_to_rest(const Scene& scene);
 
 // Speeds |omega| when passing the flat position [rad/s]; the upper one may be infinite.
@@ -64,8 +64,8 @@ struct Thresholds {
     double roll_over_speed;                // above it, the body turns over
     double contact_loss_speed = infinity;  // above it, rolling needs N < 0 somewhere
     std::optional<double> contact_loss_angle;
-    // Ranges of speeds in which rolling somewhere needs more friction than available: none for a
-    // circle, otherwise one or two; see outcome/onset.hpp. The last range has no upper end.
+    // Ranges of speeds in which rolling somewhere needs more friction than available: one or two,
+    // or none for a circle with friction; see outcome/onset.hpp. The last range has no upper end.
     std::vector<SpeedRange> slip_windows;
     std::optional<double> slip_angle;     // angle at which rolling at slip_speed() first slips
     double friction_to_roll_over;         // max |F|/N of rolling at the roll-over speed
@@ -90,9 +90,9 @@ struct LiftOff {
     std::vector<SpeedRange> jam_speeds;
 };
 
-// Lift-off of a body between its first slip and the tip; below `slip_speed` it does not slip. Above
-// the Painleve friction the body may jam instead of leaving the ground, and leave it again at
-// higher speeds. A scan finds these ranges, and bisection refines them to the last bit.
+// Lift-off of a body between its first slip and the tip; it does not slip below `slip_speed`. Above
+// the Painleve friction, the body may jam instead of leaving the ground in some ranges of speed. A
+// scan finds these ranges, and bisection refines them to the last bit.
 LiftOff lift_off(const Body& body, double friction, double slip_speed, double painleve_friction,
                  const Checkpoint& checkpoint);
 

@@ -82,8 +82,8 @@ struct Search {
                 if (readings[i - 1].is_last) {
                     passed.push_back(readings[i].t);
                 } else {
-                    // -now times the excess falls, so that a time with an excess of 0 becomes the
-                    // upper end.
+                    // The factor -now makes the excess fall, so that a time with an excess of 0
+                    // becomes the upper end.
                     const RootBracket bracket(readings[i - 1].t, readings[i].t,
                                               -now * readings[i - 1].excess,
                                               -now * readings[i].excess);
@@ -94,7 +94,7 @@ struct Search {
             before = now;
         }
         if (next < readings.size() && is_wanted(-before)) passed.push_back(readings[next].t);
-        for (;;) {  // all brackets in parallel, since many samples at once are cheaper
+        for (;;) {  // all brackets in parallel, since many samples are cheaper at once
             std::vector<double> times;
             std::vector<Crossing*> open;
             for (Crossing& crossing : crossings) {

@@ -1,6 +1,6 @@
-// The times at which a quantity of a motion passes a value. These times belong to the motion
-// itself, not to samples of it. The search examines intervals on each of which the quantity only
-// rises or only falls.
+// The times at which a quantity of a motion passes a value, computed from the motion itself rather
+// than from samples. The search examines intervals on each of which the quantity only rises or only
+// falls.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ inline constexpr std::array names<Quantity>{"theta", "x", "z", "omega", "contact
 struct Observable {
     std::optional<Quantity> quantity;  // absent for the caller's function
     Measure measure;
-    double length;  // a length [m] that adds to the rounding error, since paths are sums of lengths
+    double length;  // a length [m] that adds to the rounding error of a path, a sum of lengths
 };
 
 // Observes a quantity of a motion. Motion and checkpoint must outlive the observable.
@@ -34,9 +34,9 @@ struct Stretch {
     const char* where;           // phrase for messages, such as "while it rolls"
     std::vector<double> times;   // start, turning points, end [s], ascending
     std::vector<double> values;  // values of the observable
-    bool proved = true;          // the observable is monotone between the times
-    // The period [s] of a motion with many periods, of which `times` cover the first two and the
-    // last two.
+    bool proved = true;  // whether the observable is proved to be monotone between the times
+    // Set for a motion with many periods: the period [s]. `times` then cover only the first two and
+    // the last two periods.
     std::optional<DoubleDouble> period = {};
 };
 

@@ -36,17 +36,17 @@ void measure(const Motion& motion, const Sampler& sample, Quantity quantity, con
     }
 }
 
-// The facts about a law that the search for turning points needs. Times are measured from the start
-// of the segment, in units of the motion.
+// What the search for turning points needs to know about a segment. Times are measured from the
+// start of the segment, in units of the motion.
 struct Course {
     const char* where;
     std::vector<DoubleDouble> knots = {};  // the motion is smooth between them
     bool monotone = false;                 // the observable is provably monotone between knots
     std::optional<DoubleDouble> period = {};
-    double swung = 0.0;  // quarter turns in a period of a rocking body
+    double swung = 0.0;  // quarter turns that a rocking body makes in a period
 };
 
-// Determines the course of each law for one observable.
+// Determines the course of a segment for one observable.
 struct CourseOf {
     static constexpr const char* rolling = "while it rolls";
     static constexpr const char* resting = "while it rests";
@@ -116,8 +116,8 @@ struct Survey {
     Observable theta;
     double quarters = 0.0;  // quarter turns searched so far
 
-    // The stretch of a segment that starts at `begin` [in units of the motion], between the times
-    // `first` and `last` [s].
+    // The stretch between the times `first` and `last` [s] of a segment that starts at `begin` [in
+    // units of the motion].
     Stretch stretch(const Course& course, double begin, double first, double last) {
         Stretch stretch{course.where, {first, last}, {}};
         for (const DoubleDouble& knot : course.knots) {
@@ -154,10 +154,10 @@ struct Survey {
         times.insert(times.end(), ending.begin(), ending.end());
     }
 
-    // Adds the turning points between the times, between which the motion is smooth. Each interval
-    // is divided into `least` parts and four more for every quarter turn. For a caller's function,
-    // which may change while the body rests, `least` is at least 16/n, rounded up, where n is the
-    // number of times. Returns whether the observable is proved to be monotone between the times.
+    // Adds the turning points between the times, where the motion is smooth. Each interval is
+    // divided into `least` parts and four more for every quarter turn. For a caller's function,
+    // which may change even while the body rests, `least` is raised to 16/n, rounded up, for n
+    // times. Returns whether the observable is proved to be monotone between the times.
     bool divide(std::vector<double>& times, double least) {
         constexpr double parts_a_quarter = 4;
         if (!of.quantity) least = std::max(least, std::ceil(16.0 / double(times.size())));
@@ -192,7 +192,7 @@ void refuse_length(const Observable& of, const std::string& requirement, const s
 }
 
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint) {
-    constexpr std::size_t many = 1000;  // expected samples, enough for a table to pay off
+    constexpr std::size_t many = 1000;  // expected number of samples, enough for a table to pay off
     const auto sample = std::make_shared<const Sampler>(motion, many);
     const auto values = [&motion, &checkpoint, sample, quantity](const std::vector<double>& times) {
         constexpr std::size_t together = 1024;

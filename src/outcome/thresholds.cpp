@@ -33,8 +33,8 @@ Onset painleve(const Shape& shape) {
 
 // Whether a slide under infinite friction reaches the tip. In such a slide N = 0: the centre is in
 // free fall, and h'^2 omega^2 + 2 g h is constant, physics (52). If this constant is below 2 g L,
-// the body turns back before the tip with c > 0: from the flat position to the tip h'' falls, so
-// that c h'^2 = g h'^2 + h'' h'^2 omega^2 falls, too, but only to g h'^2 where omega vanishes.
+// the body turns back before the tip with c > 0: since h'' falls on the way to the tip, c h'^2 = g
+// h'^2 + h'' h'^2 omega^2 falls, too, but no further than g h'^2, its value where omega vanishes.
 bool reaches_the_tip(const Scene& scene, const State& start) {
     const double h = geometry(scene.axes(), start.theta).h;
     const double to_tip = under_tip(flat_view(scene.axes(), start.theta), h);
@@ -46,8 +46,8 @@ double flat_inertia(const Body& body, const FlatView& at) {
     return body.gyration2 + square(at.short_axis);
 }
 
-// The speed at the flat position of a motion with the given energy above that position, in units of
-// the long semi-axis: physics (44).
+// The angular velocity in the flat position, given the energy above it in units of the long
+// semi-axis: physics (44).
 double flat_speed(const Body& body, const FlatView& at, double over_flat) {
     return std::sqrt(2 * body.gravity * at.long_axis * over_flat / flat_inertia(body, at));
 }
@@ -68,9 +68,9 @@ struct Climb {
     double flat = scene.a >= scene.b ? 0.0 : half_pi;  // theta of the flat position
     double tip = flat + half_pi;
 
-    // The fate of a climb from the flat position to the tip. The acceleration c can vanish only on
-    // the way up, since h'' falls from the flat position to the tip and the rate of c is h'''
-    // omega^3, physics (53).
+    // The fate of a body that passes the flat position with the angular velocity omega. The
+    // acceleration c can vanish only on the way up, since h'' falls from the flat position to the
+    // tip and the rate of c is h''' omega^3, physics (53).
     Fate fate(double omega) const {
         // A climb with more segments contains slides of zero length. N and c then vanish together
         // at the tip, and the body leaves the ground.
@@ -120,19 +120,19 @@ struct Climb {
     }
 };
 
-// A speed below which the body cannot leave the ground: at lift-off omega^2 >= g/|h''| >= g L/c^2,
-// physics (53), and the body has no more energy than at the start.
+// A speed below which the body cannot leave the ground: at lift-off omega^2 >= g/|h''| >= g L/(a^2
+// - b^2), physics (53), and the body has no more energy than at the start.
 double too_slow(const Body& body, const FlatView& at) {
     return std::sqrt(body.gravity * at.long_axis / at.c2 * body.gyration2 / flat_inertia(body, at));
 }
 
-// The least speed of lift-off and the speeds of jams, from a geometric scan. Without jams the scan
-// is coarse, since a body that leaves the ground at one speed does so at any higher speed. With
-// jams the scan is fine, up to `high`, since fates may alternate.
+// The least speed of lift-off and the speeds of jams, from a scan with geometric steps. Without
+// jams the scan is coarse, since a body that leaves the ground at one speed does so at any higher
+// speed. With jams it is fine and goes up to `high`, since fates may alternate.
 LiftOff scanned(const Climb& climb, double low, double high, bool may_jam) {
     const double growth = may_jam ? 1.02 : 1.05;
     const int most_growths = may_jam ? int(std::log(high / low) / std::log(growth)) + 1 : 200;
-    constexpr double known = 1e-5;   // relative step past a change; closer to it, rounding decides
+    constexpr double known = 1e-5;   // relative step past a change, close to which rounding decides
     constexpr int most_changes = 8;  // largest number of changes in one step
     LiftOff lift_off;
     Fate before = Fate::stays;
@@ -214,7 +214,7 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
     const Units units = natural_units(body);
     const Scene scene = in_units(level_scene(body, friction), units);
     const double low = std::max(slip_speed, too_slow(body, at)) * units.time;
-    // At 50 times the speeds that gravity determines, gravity is 2500 times weaker relative to
+    // At 50 times the roll-over and contact-loss speeds, gravity is 2500 times weaker relative to
     // omega^2 and no longer matters. The slip speed may be far lower, if the body slips even from
     // rest.
     const double loss = flat_speed(body, at, contact_loss(shape(body, at)).value);

@@ -18,9 +18,9 @@ double direction_of(const RollingStart& from) {
     return from.omega != 0 ? std::copysign(1.0, from.omega) : -std::copysign(1.0, from.view.sin);
 }
 
-// The law on the quarter turn whose mirror images make up the motion. A position (`place`) is given
-// by the angle from the flat position or, if the motion starts nearer the tip, by minus the angle
-// from the tip, so that positions near the start have full precision.
+// The law on the quarter turn whose mirror images make up the motion. A position (`place`) is the
+// angle from the flat position or, if the motion starts nearer the tip, minus the angle from the
+// tip, which gives positions near the start full precision.
 struct Quarter {
     const EnergyRange& range;
     double friction;
@@ -59,8 +59,8 @@ struct Quarter {
     }
 };
 
-// The position from which the law holds: the start, or a position just ahead if the law is at its
-// limit at the start; empty if the law is broken.
+// The position from which the law holds: the start or, if the law is at its limit at the start, a
+// position just ahead; empty if the law is broken.
 std::optional<double> holds_from(const Quarter& quarter) {
     constexpr double ahead = 1e-8;  // fraction of the angle to the flat position or the tip
     if (!at_the_limit(quarter.force, quarter.friction)) {
@@ -73,8 +73,8 @@ std::optional<double> holds_from(const Quarter& quarter) {
 }
 
 // Appends the zeros of the law between `from` and `to` near `zero`, a zero of the squared form of
-// the law. Near the tip both forces may be small, and squaring halves the number of accurate
-// digits. If F vanishes at `zero`, too, the law may hold there and fail on both sides.
+// the law. Near the tip N and F may be small, and squaring halves the number of accurate digits. If
+// F vanishes at `zero`, too, the law may hold there and fail on both sides.
 void add_refined(std::vector<double>& places, const Quarter& quarter, double zero, double from,
                  double to) {
     const auto holds = [&](double place) { return quarter.holds(place); };
@@ -117,9 +117,9 @@ std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& 
     return places;
 }
 
-// Appends the ends of the interval, around the start, on which the law holds. Where F vanishes, as
-// in the flat position and on the tip, a tiny coefficient of friction suffices; the interval may
-// then be too narrow for the roots of the squared form to resolve.
+// Appends the ends of the interval around `start` on which the law holds. Where F vanishes, as in
+// the flat position and on the tip, a tiny coefficient of friction suffices; the interval may then
+// be too narrow for the roots of the squared form to resolve.
 void add_ends_about(std::vector<double>& places, double start, const Quarter& quarter) {
     const auto holds = [&](double place) { return quarter.holds(place); };
     const auto broken = [&](double place) { return !holds(place); };

@@ -9,13 +9,13 @@
 namespace rolling_ellipse {
 
 // edge: the margin of the law is 0 to within rounding. no_proof: the body does not roll at the
-// start.
+// start, or has rolling resistance.
 enum class Validity { valid, invalid, edge, no_proof };
 
 template <>
 inline constexpr std::array names<Validity>{"VALID", "INVALID", "EDGE", "NO_PROOF"};
 
-// The end of rolling, forward in time: theta and the sign of omega at that moment. The angle is
+// The end of rolling, forward in time: theta and the sign of omega when rolling ends. The angle is
 // empty if rolling does not end.
 struct EndOfRolling {
     Validity validity;

@@ -6,7 +6,7 @@
 //     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2     physics (33)
 //     Q = -h V + 2 e (B (K - c2) + s y),                     F = h' u Q/V^2  physics (34)
 //     G = (h h')^2 = (1 - u) y                                               physics (35)
-// from N and F of rolling, physics (23, 24). There is no cancellation: c2 is accurate even for a
+// from N and F of rolling, physics (23, 24). Cancellation is avoided: c2 is accurate even for a
 // nearly circular body, and e even for a thin body near a turning point.
 #pragma once
 
@@ -25,8 +25,8 @@ struct Shape {
 
 Shape shape(const Body& body, const FlatView& view);
 
-// A position of a rolling body, given by sin^2 and cos^2 of its angle from the flat position, with
-// the parts of D = kh + h'^2 and of N = (kh + omega^2 normal_part)/D, physics (16, 23).
+// The quantities at a position of a rolling body from which D = kh + h'^2 and N = (kh + omega^2
+// normal_part)/D are computed, physics (16, 23).
 struct ShapePlace {
     double h2;
     double h;
@@ -39,7 +39,7 @@ struct ShapePlace {
 
 ShapePlace place_at(const Shape& shape, double sin2, double cos2);
 
-// The heights h = short_axis + width x, 0 <= x <= 1, that a body of given shape and energy reaches.
+// The heights h = short_axis + width x, 0 <= x <= 1, that a body reaches with a given energy.
 struct EnergyRange : Shape {
     double width;       // width of the range of heights
     double energy_gap;  // H minus the greatest height reached; 0 in libration
@@ -87,7 +87,7 @@ struct RollingForces {
 // Contact forces at the height h = short_axis + width x.
 RollingForces rolling_forces(const EnergyRange& range, double x);
 
-// Contact forces from sin^2 and cos^2 of the angle, which near the tip are more accurate than x.
+// Contact forces from sin^2 and cos^2 of the angle, which are more accurate than x near the tip.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2);
 
 // Contact forces from sin^2 and cos^2 of the angle and omega^2 in units of g/L.
@@ -98,8 +98,8 @@ struct ForceExtremes {
     RollingForces most_friction;  // forces at the largest |F|/N
 };
 
-// The extremes of N and |F|/N over a range. Candidates are their critical points, the ends of the
-// range and the zeros of N.
+// The extremes of N and |F|/N over a range, among their critical points, the ends of the range and
+// the zeros of N.
 ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& polynomials);
 
 }  // namespace rolling_ellipse

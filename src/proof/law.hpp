@@ -39,8 +39,8 @@ inline bool at_the_limit(const ContactForce& force, double friction) {
            law_rounding * law_size(force, friction) + least_friction * std::abs(force.normal);
 }
 
-// A slightly larger friction coefficient, with which a law at its limit holds by a margin larger
-// than the rounding error.
+// A slightly larger friction coefficient, with which a law at its limit holds by more than the
+// rounding error.
 inline double beyond_the_limit(double friction) {
     return friction * (1 + 8 * law_rounding) + 8 * least_friction;
 }

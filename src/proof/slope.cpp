@@ -11,17 +11,16 @@
 namespace rolling_ellipse {
 namespace {
 
-// The scene, viewed so that a body that rolls downhill has growing angles and that the long axis is
-// parallel to the ground at angle 0.
+// The scene, viewed so that angles grow downhill and the body lies flat at angle 0.
 Scene downhill(Scene scene) {
     if (scene.a < scene.b) std::swap(scene.a, scene.b);
     scene.slope = std::abs(scene.slope);
     return scene;
 }
 
-// The well between two upright equilibria, half a turn apart: W = D omega^2/2 rises up to the lying
-// equilibrium and falls beyond it, since dW = (g sin(alpha) h - g cos(alpha) h') dtheta by physics
-// (18).
+// The potential well between two upright equilibria, half a turn apart: W = D omega^2/2 rises up to
+// the lying equilibrium and falls beyond it, since dW = (g sin(alpha) h - g cos(alpha) h') dtheta
+// by physics (18).
 class Well {
   public:
     // The well of a body that rolls from a state.
@@ -68,8 +67,8 @@ class Well {
 
     double energy(double angle) const { return energy_ + gained(angle); }
 
-    // W at an angle minus W at the start. Over small angles, where a difference of two heights or
-    // paths would be inaccurate, it is computed by quadrature of physics (62).
+    // W at an angle minus W at the start. Over small angles, a difference of two heights or paths
+    // would be inaccurate, and physics (62) is integrated instead.
     double gained(double angle) const {
         const double turned = angle - start_;
         const Geometry from = geometry(axes_, start_);
@@ -114,8 +113,8 @@ class Well {
         return angles;
     }
 
-    // The angle at which a measure is largest, by golden-section search around every angle at which
-    // the measure is at least as large as at both neighbours.
+    // The angle at which a measure is largest, from a golden-section search around every angle at
+    // which it is at least as large as at both neighbours.
     template <class Measure>
     static double highest(const std::vector<double>& at, const Measure& measure) {
         std::vector<double> values(at.size());

@@ -1,5 +1,5 @@
-// Rolling on a slope: its end, and its certificate. The extremes of the forces are infinite unless
-// the body rests, rocks between two turning points, or is a circle.
+// Rolling on a slope: its end and its certificate, in which the extremes of the forces are infinite
+// unless the body rests, rocks between two turning points, or is a circle.
 #pragma once
 
 #include "proof/certificate.hpp"
@@ -38,7 +38,7 @@ class LawWatch {
     bool examine(const Mirror&) { return false; }
     bool examine(const Repeat&) { return false; }
 
-    // The meetings up to now. A motion that ends within rounding of the limit has touched it.
+    // The results so far. A motion that ends within rounding of the limit has touched it.
     LawMeetings met() const;
 
   private:
@@ -47,7 +47,7 @@ class LawWatch {
     // A stretch of time on which the margin is within rounding of 0.
     struct Stretch {
         bool open = false;
-        std::optional<Meeting> begin;  // empty if the stretch starts with the motion
+        std::optional<Meeting> begin;  // empty if it starts with the motion
     };
 
     bool examine_parts(const SlopePiece& piece);
@@ -63,11 +63,11 @@ class LawWatch {
     LawMeetings met_;
 };
 
-// The limits reached over the whole motion, or at least up to a time [s]; extends the flow as
-// needed.
+// Where the whole motion, or at least its part up to a time [s], is at the limit of the law;
+// extends the flow as needed.
 LawMeetings law_meetings(SlopeFlow& flow, double friction, double until = infinity);
 
-// The end of rolling for a certificate, in which a touch counts as an edge.
+// The end of rolling for a certificate; where the motion only touches the limit, it is `edge`.
 EndOfRolling end_of_rolling(const LawMeetings& met);
 
 // Whether the rolling motion from a state on a slope may stay valid forever. A circle and a body in

@@ -2,10 +2,9 @@
 //
 // N and F come from the same power series as the motion, N = g_into + h'' and F = x'' - g_along, so
 // that the law first breaks at the first root of a polynomial. In a half turn of a run or climb,
-// polynomials on its parts may provide a faster proof that the law holds. Half turns need not be
-// followed one by one: at each angle N and F are linear in W = D omega^2/2, physics (58), so that
-// the law holds on an interval of W. If it holds in two half turns, it holds in all half turns
-// between them.
+// polynomials on its parts may give a faster proof that the law holds. Half turns need not be
+// followed one by one: at each angle N and F are linear in W = D omega^2/2, physics (58), and the
+// law holds on an interval of W. If it holds in two half turns, it holds in all between them.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -25,8 +24,8 @@ constexpr double rounding = 1e-12;
 
 }  // namespace
 
-// The margin of the law for one direction of the friction force, a polynomial in x, where x in
-// [0, 1] is the position in a piece.
+// The margin of the law for one direction of the friction force, as a polynomial in the fraction x
+// of a piece.
 struct LawWatch::Law {
     double side;
     double size;  // sum of the magnitudes of the terms of the law
@@ -113,7 +112,7 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
             if (!met_.touched) met_.touched = near.begin;
             near = {};
         } else if (here >= -law.tolerance()) {
-            // The rounding error of the forces, smaller than the error of their polynomials.
+            // The rounding error of the forces; the error of their polynomials is larger.
             const double fine = law_rounding * law.size;
             double least = at(low) < at(high) ? low : high;
             if (at(least) >= -fine) {
@@ -184,9 +183,9 @@ LawMeetings LawWatch::met() const {
 namespace {
 
 // Whether the law provably holds on a part with the given forces. The margin at each node must
-// exceed the largest possible change of the margin between a node and the points around it, which
-// follows from |P_k'| <= k (k + 1)/2 on -1 ... 1. The omitted terms, which fall by a factor of at
-// least 2 per degree, change the margin by less than 40 times the sum of the last two terms.
+// exceed the largest possible change between a node and the points around it, which follows from
+// |P_k'| <= k (k + 1)/2 on [-1, 1]. The omitted terms, which fall by a factor of at least 2 per
+// degree, change the margin by less than 40 times the sum of the last two terms.
 bool holds_on_part(const PartForces& forces, const GroundGravity& gravity, double friction) {
     constexpr double to_a_node = 0.077;  // largest distance of a point from the nearest node
     constexpr double resolved = 1e-8;
@@ -207,9 +206,8 @@ bool holds_on_part(const PartForces& forces, const GroundGravity& gravity, doubl
     return ends <= resolved * size && least - to_a_node * change > rounding * size + 40 * ends;
 }
 
-// The limits reached in one half turn of a run, which follows its first `half_turns` half turns. If
-// the parts of the run prove that the law holds, no limit is reached; otherwise power series follow
-// the half turn.
+// Where a run is at the limit of the law in the half turn after its first `half_turns` half turns.
+// Power series follow the half turn only if its parts do not prove that the law holds.
 LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double friction,
                              double half_turns) {
     const bool holds = std::all_of(run.parts.begin(), run.parts.end(), [&](const RunPart& part) {
@@ -233,8 +231,8 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double 
     return watch.met();
 }
 
-// First guess of the half turn of a complete run in which the law breaks, from the nodes of its
-// parts. The forces at a node are linear in W, hence in the number of half turns.
+// A first guess of the half turn in which the law breaks, from the nodes of the parts of a complete
+// run. The forces at a node are linear in W, hence in the number of half turns.
 double broken_about(const SlopeRun& run, double friction) {
     const double later =
         std::max(1.0, std::min(run.start.energy / run.body.gain, run.half_turns - 1));
@@ -261,9 +259,9 @@ LawMeetings joined(const LawMeetings& met, const LawMeetings& later) {
     return {met.touched ? met.touched : later.touched, met.broken ? met.broken : later.broken};
 }
 
-// The limits reached in a run. If the law breaks in a half turn, it breaks in all later half turns,
-// too. The search for the first such half turn takes growing steps from a guess, then bisects. The
-// run is followed at least up to the time `until` after its start.
+// Where a run is at the limit of the law, at least up to the time `until` after its start. If the
+// law breaks in a half turn, it breaks in all later ones, too. The search for the first of them
+// takes growing steps from a guess, then bisects.
 LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction, double until) {
     LawMeetings met = law_in_half_turn(flow, run, friction, 0.0);
     const double all = run.half_turns - 1;
@@ -313,8 +311,7 @@ bool LawWatch::examine(Sum& sum) {
     return met_.broken.has_value();
 }
 
-// If the parts of a swing prove that the law holds, no limit is reached; otherwise power series
-// follow the motion.
+// Power series follow the motion only if the parts of the swing do not prove that the law holds.
 bool LawWatch::examine(const Swing& swing) {
     const auto holds = [&](const WellSide& side) {
         return std::all_of(side.parts.begin(), side.parts.end(), [&](const RunPart& part) {

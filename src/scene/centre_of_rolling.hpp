@@ -16,14 +16,14 @@ struct CentreOfRolling {
     Components<T> acceleration;
 };
 
-// Computes the force and the acceleration without subtracting accelerations, which would be
-// inaccurate for a thin body near its tip, where the normal force is small. With w = h h'' - h'^2 =
-// (a^2 - b^2) (b^2 cos^2 - a^2 sin^2)/h^2, D the inertia about the contact, and the components of
-// gravity into the ground and along it:
+// Computes the force and the acceleration without subtracting accelerations. Near the tip of a thin
+// body the normal force is small, and such a difference would be inaccurate. With w = h h'' - h'^2
+// = (a^2 - b^2) (b^2 cos^2 - a^2 sin^2)/h^2, D the inertia per mass about the contact, and
+// gravity's components `into` the ground and `along` it:
 //     N/m = ((k^2 h'' + h w) omega^2 + (k^2 + h^2) into + h h' along)/D,      physics (23)
 //     F/m = (h' (k^2 - w) omega^2 - h h' into - (k^2 + h'^2) along)/D,        physics (24)
-// The acceleration has -h'^2 into in place of (k^2 + h^2) into, and h^2 along in place of -(k^2 +
-// h'^2) along.
+// For the acceleration, the factor of `into` is -h'^2 instead of k^2 + h^2, and the factor of
+// `along` is h^2 instead of -(k^2 + h'^2).
 template <class T>
 [[gnu::always_inline]] inline CentreOfRolling<T> centre_of_rolling(double k2, double into,
                                                                    double along, T h, T dh, T ddh,

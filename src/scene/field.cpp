@@ -9,7 +9,7 @@
 
 namespace rolling_ellipse {
 
-// The fewest digits, at least 15, that distinguish a number from its neighbours; 17 always suffice.
+// Uses the fewest digits, at least 15, that distinguish the number from its neighbours; 17 suffice.
 std::string text(double value) {
     if (std::isnan(value)) return "nan";
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";

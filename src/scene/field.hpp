@@ -1,5 +1,5 @@
-// The fields of a struct by name and unit, and the rejection of invalid values. Code that copies,
-// scales or names all fields of a struct reads the table that follows the struct.
+// Names and units of the fields of structs, and the rejection of invalid values. A table after each
+// struct lists its fields for code that copies, scales or names them all.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace rolling_ellipse {
 
-// A unit as printed (UTF-8; C2 B2 is a superscript 2) and its exponents of metre, second and
+// The symbol of a unit in UTF-8 (C2 B2 is a superscript 2) and its exponents of metre, second and
 // kilogram.
 struct Unit {
     const char* symbol;
@@ -45,7 +45,7 @@ struct Field {
     Unit unit;
 };
 
-// A double as Python prints it, except that 1e+15 and subnormals may be printed differently.
+// A double as Python prints it, except that subnormals and numbers from 1e15 to 1e17 may differ.
 std::string text(double value);
 
 // Throws std::invalid_argument, which Python shows as ValueError: "name must be requirement, got
@@ -60,7 +60,7 @@ std::string in_brackets(const Unit& unit);
 // Throws unless a position, velocity or impulse is finite and at most 1e50 in magnitude.
 void require_finite(const char* name, const Unit& unit, double value);
 
-// Throws unless a quantity of the given kind ("length [m]") is positive and between 1e-30 and 1e30.
+// Throws unless a quantity of the given kind ("length [m]") is between 1e-30 and 1e30.
 void require_positive(std::string_view name, std::string_view kind, double value);
 
 }  // namespace rolling_ellipse

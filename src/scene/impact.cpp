@@ -7,8 +7,8 @@ namespace rolling_ellipse {
 namespace {
 
 // The velocity of the material contact point, v along the ground and u away from it, physics (12),
-// and the Delassus matrix, by which an impulse at the contact changes that velocity, physics (39).
-// See W. J. Stronge, Impact Mechanics (2000), ch. 3.
+// and the Delassus matrix, which maps an impulse at the contact to the change of that velocity,
+// physics (39). See W. J. Stronge, Impact Mechanics (2000), ch. 3.
 struct Contact {
     double v;
     double u;
@@ -100,13 +100,14 @@ class ImpulsePath {
         return true;
     }
 
-    // Called when the slip has stopped: u is u_without_slip plus the effect of the normal impulse.
+    // Called when the slip has stopped: u is then u_without_slip plus the effect of the normal
+    // impulse.
     void stop_slip(const Contact& c) { u_ = c.u_without_slip + normal_ * (c.determinant / c.gtt); }
 
     Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
 
   private:
-    // The normal impulse still to come until restitution ends, and u at that moment.
+    // The normal impulse that remains until restitution ends, and u at that moment.
     struct End {
         double p;
         double u;
@@ -159,21 +160,20 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution,
     return path.result(sticks);
 }
 
-// Adds a change to a number that is stored in two parts.
+// Adds a change to a number that is stored as a high and a low part.
 void add(double change, double& number, double& low) {
     const DoubleDouble sum = DoubleDouble{number, low} + change;
     number = sum.high;
     low = sum.low;
 }
 
-// After the collision, the gap rate is exactly the rebound, and v is exactly 0 if the contact
-// sticks. The reaction does not change k^2 omega + h x_dot + h' z_dot, the angular momentum about
-// the contact. If the contact sticks, x_dot = h omega and z_dot = h' omega + rebound afterwards,
-// which gives omega, physics (40); if omega changes little, its change is computed from v and u
-// before the collision instead. If the contact keeps slipping, the impulse gives x_dot and omega.
-// Where most of omega would cancel, the angular momentum about another point on the line of the
-// impulse, at the height of the centre, can give omega more accurately. Where h' omega + rebound
-// would cancel, the impulse gives z_dot.
+// Applies the reaction so that the gap rate is exactly the rebound and, if the contact sticks, v is
+// exactly 0. The reaction preserves k^2 omega + h x_dot + h' z_dot, the angular momentum per mass
+// about the contact. If the contact sticks, omega follows from x_dot = h omega and z_dot = h' omega
+// + rebound, physics (40), or, if omega changes little, from v and u before the collision. If the
+// contact keeps slipping, the impulse gives x_dot and omega. If most of omega would cancel, it can
+// be more accurate to compute omega from the angular momentum about the point of the impulse's line
+// at the height of the centre. If h' omega + rebound would cancel, the impulse gives z_dot.
 void apply(const Scene& scene, const Geometry& at, const Contact& c, const Reaction& reaction,
            State& state, LowParts& low) {
     const double k2 = scene.inertia / scene.mass;
@@ -226,8 +226,8 @@ bool is_struck(const Scene& scene) {
     return scene.impulse && (scene.impulse->jx != 0 || scene.impulse->jz != 0);
 }
 
-// Applies the impulse to a free body, physics (38). Returns the rate of its gap, which would be
-// less accurate as a difference of the new velocities.
+// Applies the impulse to a free body, physics (38). Returns the rate of the gap, which the new
+// velocities would give less accurately.
 double strike(const Scene& scene, const Impulse& j, const Geometry& at, State& state) {
     const double lifted = j.jz / scene.mass;
     const double spun = (j.jx * j.dz - j.jz * j.dx) / scene.inertia;
@@ -255,8 +255,7 @@ InitialState initial_state(const Scene& scene) {
     }
 
     Contact c = contact(scene, at, state, rate);
-    // A negligible angle counts as 0: a slide that started there would end at a time
-    // indistinguishable from 0 in double precision.
+    // A negligible angle counts as 0: a slide from it would end at a time indistinguishable from 0.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
         c.u_without_slip = c.u;
@@ -291,8 +290,8 @@ double energy_after_impulse(const Scene& scene, const Geometry& at) {
            (scene.gravity * std::max(scene.a, scene.b));
 }
 
-// The slip stops before the compression ends if |v| (Gnn - mu s Gtn) <= |u| (mu Gtt - s Gtn), and
-// does not start again if |Gtn| <= mu Gtt, physics (41).
+// With s = sign(v), the slip stops before the compression ends if |v| (Gnn - mu s Gtn) <= |u| (mu
+// Gtt - s Gtn), and does not start again if |Gtn| <= mu Gtt, physics (41).
 double sticking_friction(const Scene& scene) {
     const Geometry at = geometry(scene.axes(), scene.theta);
     State state = state_before_impulse(scene, at);
@@ -301,7 +300,7 @@ double sticking_friction(const Scene& scene) {
     const double rate = strike(scene, *scene.impulse, at, state);
     const Contact c = contact(scene, at, state, rate);
     if (c.u > 0) return infinity;
-    if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // without normal force there is no friction
+    if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // no normal force, hence no friction
     const double to_stay = std::abs(c.gtn) / c.gtt;
     const double towards = c.v == 0 ? 0.0 : std::copysign(c.gtn, c.gtn * c.v);  // s Gtn
     const double normal = std::abs(c.u) * c.gtt + std::abs(c.v) * towards;

@@ -7,7 +7,7 @@
 
 namespace rolling_ellipse {
 
-// Laws of restitution with a coefficient e. Stronge: restitution returns e^2 of the work of
+// Laws of restitution with a coefficient e. Stronge: restitution returns e^2 times the work of
 // compression. Poisson: the normal impulse of restitution is e times that of compression (Traite de
 // mecanique, 1833). Newton: the gap opens e times as fast as it closed.
 enum class Restitution { stronge, poisson, newton };
@@ -15,7 +15,7 @@ enum class Restitution { stronge, poisson, newton };
 template <>
 inline constexpr std::array names<Restitution>{"STRONGE", "POISSON", "NEWTON"};
 
-// The state just after the applied impulse, or the scene's own state if there is none. Its mode
+// The state just after the applied impulse, or the scene's state if there is no impulse. Its mode
 // follows from its velocities; contact/sliding.hpp determines the mode that the forces allow.
 struct InitialState {
     State state;
@@ -24,7 +24,7 @@ struct InitialState {
     double free_omega;          // angular velocity without the ground: the report's eq 48
     double slip_removed = 0.0;  // initial slip that infinite friction stops at once [m/s]
     double energy_lost = 0.0;   // energy lost when this slip stops, or in an impact [J]
-    double gap_rate = 0.0;      // rate of the gap, without cancellation; 0 in contact [m/s]
+    double gap_rate = 0.0;      // rate of the gap, free of cancellation; 0 in contact [m/s]
     bool touching = false;      // whether the body touched the ground before the impulse
 };
 
@@ -36,8 +36,8 @@ inline constexpr Field<InitialState> start_fields[] = {
 
 InitialState initial_state(const Scene& scene);
 
-// The kinetic energy after the impulse as if there were no ground (the ground can only lower it),
-// in units of m g times the long semi-axis.
+// The kinetic energy after the impulse if there were no ground, which can only lower it, in units
+// of m g times the long semi-axis.
 double energy_after_impulse(const Scene& scene, const Geometry& at);
 
 // The smallest coefficient of friction with which the contact does not slip after the applied
@@ -51,8 +51,8 @@ double energy_lost(const Scene& scene, const State& before, const State& after);
 // The rate of the gap: the velocity of the lowest point away from the ground.
 double gap_rate(const State& state, const Geometry& at);
 
-// The low parts of the numbers in a state. Without them, the nearly equal rounding errors of many
-// nearly equal impacts would add up.
+// The low parts of the numbers in a state. Without them, many nearly equal impacts would add up
+// nearly equal rounding errors.
 struct LowParts {
     double theta = 0.0;
     double omega = 0.0;
@@ -60,9 +60,9 @@ struct LowParts {
     double x_dot = 0.0;
 };
 
-// The state of a body that touches the ground just after its collision, with its mode unchanged,
-// and the rate of the gap. The rate before the collision is a separate argument since, after a low
-// hop, it is known more accurately than from the velocities.
+// The state just after the collision of a body that touches the ground, with its mode unchanged,
+// and the rate of the gap. The rate of the gap before the collision is a separate argument because,
+// after a low hop, it is known more accurately than the velocities.
 struct Collision {
     State after;
     LowParts low;

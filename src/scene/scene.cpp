@@ -11,8 +11,8 @@ namespace {
 constexpr double aspect_limit = 1e3;
 constexpr double blow_margin = 1e-12;  // allowed for rounding, as a fraction of the long semi-axis
 
-// Rejects a moment of inertia, or a k^2, that is out of bounds. The bounds compare k^2 with the
-// square of the long semi-axis, so that the k^2 of a valid scene is valid for a body, too.
+// Rejects a moment of inertia, or k^2, if k^2 is out of bounds relative to the square of the long
+// semi-axis. The k^2 of a valid scene is therefore valid for a body, too.
 void require_inertia(std::string_view name, std::string_view kind, double value, const Body& body,
                      std::string_view unit_name) {
     constexpr double least = 1e-6;
@@ -26,8 +26,8 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
     }
 }
 
-// Rejects a blow whose line of action misses the body. A tangent parallel to that line lies at the
-// distance `reach` from the centre: h of physics (1) for the direction across the line.
+// Rejects a blow whose line of action misses the body. The tangents parallel to that line are at
+// the distance `reach` from the centre: h of physics (1), in the direction across the line.
 void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow,
                    const std::string& name) {
     const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));

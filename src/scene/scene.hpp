@@ -1,5 +1,4 @@
-// The body, the ground, the start and the state as plain structs, and the rules that they must
-// obey.
+// Body, ground, start and state as plain structs, and the rules that they must obey.
 #pragma once
 
 #include <algorithm>
@@ -80,20 +79,20 @@ struct Scene {
     GroundGravity ground_gravity() const { return rolling_ellipse::ground_gravity(gravity, slope); }
 };
 
-// A field of a Scene, and its default value if the fields before it determine one.
+// A field of a Scene, and its default value if it follows from the fields before it.
 struct SceneField {
     const char* name;
     std::variant<double Scene::*, std::optional<double> Scene::*> number;
     Unit unit;
     double (*otherwise)(const Scene&) = nullptr;
 
-    // Null if the value is absent.
+    // A pointer to the value in the scene; null if the value is absent.
     double* of(Scene& scene) const;
     // A required value that is absent becomes NaN, which `validate` rejects.
     void set(Scene& scene, std::optional<double> value) const;
 };
 
-// The fields of a scene, in the order of the columns of a table of scenes and of the files that
+// The fields of a scene, in the column order of tables of scenes and of the files that
 // `simulate_many` writes.
 inline constexpr SceneField scene_fields[] = {
     {"a", &Scene::a, unit::length},
@@ -113,8 +112,8 @@ inline constexpr SceneField scene_fields[] = {
     {"x_dot", &Scene::x_dot, unit::speed},
     {"z_dot", &Scene::z_dot, unit::speed}};
 
-// The scene with these values, in the order of `scene_fields`; not validated. Without arguments,
-// every required value is NaN.
+// The scene with these values, which are in the order of `scene_fields` and are not validated.
+// Without arguments, every required value is NaN.
 using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
 Scene scene_of(const SceneNumbers& numbers = {}, const std::optional<Impulse>& impulse = {});
 
@@ -173,15 +172,15 @@ inline double zero_if_negligible(double value) {
     return value > -1e-100 && value < 1e-100 ? 0.0 : value;
 }
 
-// Whether two values are equal to within the rounding of a few operations.
+// Whether two values are equal to within the rounding errors of a few operations.
 inline bool nearly_equal(double value, double target, double ulps = equal_ulps) {
     const double ulp =
         std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
     return std::abs(value - target) <= ulps * ulp;
 }
 
-// Whether x_dot is that of rolling, h omega, to within eight times the rounding error of its terms:
-// half an ulp each for x_dot and omega, and 3 ulp for the product with h.
+// Whether x_dot is h omega, as in rolling, to within eight times the possible rounding error: half
+// an ulp each of x_dot and omega, and 3 ulp of the product.
 inline bool is_rolling_speed(double x_dot, double h_omega) {
     constexpr double ulps_of_terms = 4;
     return nearly_equal(x_dot, h_omega, equal_ulps * ulps_of_terms);
@@ -191,8 +190,7 @@ inline bool is_rolling_speed(double x_dot, double h_omega) {
 // rounded angle, whose error is then up to 6e-8 rad.
 inline constexpr double most_turned = 1e9;
 
-// Eight rounding errors of an angle [rad], of half an ulp each. They stay constant beyond
-// `most_turned`.
+// Eight rounding errors of an angle [rad], of half an ulp each; constant beyond `most_turned`.
 inline double angle_roundings(double theta) {
     const double size = std::min(std::abs(resolved(theta)), most_turned);
     return 0.5 * equal_ulps * (std::nextafter(size, infinity) - size);
@@ -235,9 +233,9 @@ inline bool is_weightless(const Geometry& at, double gravity_into_ground, double
            equal_ulps * epsilon * gravity_into_ground + free_acceleration_rate(at, omega) * blur;
 }
 
-// Units matched to the size of a body. They are powers of two, so that conversion is exact. In
-// these units, the size, the time scale and the mass of a body are near 1, so that computations
-// stay in the range of doubles.
+// Units of a motion: SI units or natural units. Natural units are powers of two near the size, the
+// time scale and the mass of the body, which keeps conversions exact and results within the range
+// of doubles.
 struct Units {
     double length = 1.0;  // unit of length [m]
     double time = 1.0;    // unit of time [s]
@@ -272,25 +270,24 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
 }
 
-// Where a scene comes from: typed by a user, or reached by a motion. In a state reached by a
-// motion, the body may have gained energy on its way down a slope, and may be about to hit the
-// ground that it touches.
+// Whether a user typed a scene or a motion reached it. In a reached state, the body may have gained
+// energy on its way down a slope, and may be about to hit the ground that it touches.
 enum class Origin { typed, reached };
 
-// Whether a rolling resistance of the given lever can balance the lever one + other, to within
-// rounding.
+// Whether rolling resistance with the lever `resistance` can balance the lever `one` + `other`, to
+// within rounding.
 inline bool is_within(double resistance, double one, double other) {
     const double rounding = equal_ulps * epsilon * (std::abs(one) + std::abs(other));
     return resistance > 0 && std::abs(one + other) <= resistance + rounding;
 }
 
-// Whether a body that neither slips nor turns is held in place, physics (63). This is so if its
-// centre lies vertically above the contact patch, which extends to either side of the contact by
-// the lever of rolling resistance.
+// Whether a body that neither slips nor turns stays in place, physics (63): its centre must lie
+// vertically above the contact patch, which extends from the contact to either side by the lever of
+// rolling resistance.
 bool is_held(const Scene& scene, const Geometry& at);
 
-// The lever of rolling resistance, whose couple opposes a rotation, even one that is only about to
-// start; positive if the rotation is clockwise.
+// The lever of rolling resistance against a rotation, even one that is only about to start;
+// positive if the rotation is clockwise.
 inline double lever_against(const Scene& scene, double rotation) {
     return scene.rolling_resistance > 0 ? std::copysign(scene.rolling_resistance, rotation) : 0.0;
 }
@@ -317,10 +314,10 @@ void validate_blow(const Scene& scene, const Geometry& at, const std::string& na
 // The scene of a body that continues, without an impulse, from a state that its motion has reached.
 Scene reached(Scene scene, const State& state);
 
-// The state before any impulse, given the geometry at its angle. Absent values are filled in;
-// values within rounding of touching or of rolling are set exactly. A body that touches the ground
-// and moves into it counts as flying, since it hits the ground at once. Throws if the body is below
-// the ground.
+// The state before any impulse, given the geometry at the scene's angle. Absent values are filled
+// in. A height or velocity that matches contact or rolling to within rounding is set to match
+// exactly. A body that touches the ground and moves into it counts as flying, since it hits the
+// ground at once. Throws if the body is below the ground.
 State state_before_impulse(const Scene& scene, const Geometry& at);
 
 }  // namespace rolling_ellipse

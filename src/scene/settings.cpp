@@ -44,7 +44,7 @@ void validate_step(const Settings& settings, double t_end) {
     }
 }
 
-// Rejects a method that the model lacks, and a stabilization that the method lacks.
+// Rejects a method or a stabilization that the model lacks, and pairs of them that do not match.
 void validate_method(const Settings& settings) {
     const Method method = settings.method;
     const std::string chosen = quoted(name(method));
@@ -85,7 +85,7 @@ void validate_stages(const Settings& settings) {
     if (*settings.stages < 2 || *settings.stages > 4) refuse("stages", "2, 3 or 4", stages);
 }
 
-// Rejects an argument that needs events if the model has none.
+// Rejects an argument that needs events if the model or the method has none.
 void require_events(const Settings& settings, const char* argument, const std::string& none,
                     const std::string& given) {
     const bool by_rolling = settings.method != Method::automatic;
@@ -96,7 +96,7 @@ void require_events(const Settings& settings, const char* argument, const std::s
     }
 }
 
-// Rejects blows that are out of order or outside the span.
+// Rejects blows that are out of order or outside the time of the motion.
 void validate_blows(const Settings& settings, double t_end) {
     if (settings.blows.empty()) return;
     require_events(settings, "blows", "()", text(settings.blows.front().t) + " s");

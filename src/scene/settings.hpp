@@ -36,8 +36,8 @@ struct Blow {
     Impulse impulse;
 };
 
-// Where a motion stops: at events of some kinds, or once it is proved to rest, or to keep rolling
-// or sliding, for ever.
+// When a motion stops: at an event of the given kinds, or once the body is proved to rest, roll or
+// slide for ever.
 struct Stop {
     long kinds = 0;  // a bit mask: 1 << kind for each EventKind
     bool decided = false;
@@ -56,11 +56,11 @@ struct Settings {
     std::array<double, 2> baumgarte;  // alpha and beta [1/s]
     long max_steps;
     long max_events;
-    // Slower bounces are summed [m/s]; if absent, the speed is 1e-6 sqrt(g min(a, b)).
+    // Bounces slower than this are summed [m/s]; if absent, 1e-6 sqrt(g min(a, b)).
     std::optional<double> rest_speed;
     std::vector<Blow> blows = {};  // in order of time
     Stop stop = {};
-    long count = 1;  // number of the event, of the kinds in `stop`, at which the motion stops
+    long count = 1;  // stop at this many events of the kinds in `stop`
 
     bool is_for_events() const { return stop || !blows.empty(); }
 };

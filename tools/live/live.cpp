@@ -1,5 +1,5 @@
-// The core for a web page: simulates a scene, describes its motion in sentences, then samples it at
-// any times; or reports only the first outcome. tools/live/build.sh compiles it.
+// The core for a web page, compiled by tools/live/build.sh. It simulates a scene, describes the
+// motion in sentences and samples it at any times, or reports only the first outcome.
 #include "describe.hpp"
 
 namespace rolling_ellipse {
@@ -36,9 +36,9 @@ Impulse impulse_from(const double*& asked) {
     return found;
 }
 
-// Reads a question from numbers: those of the scene in the order of `columns`, the end time, the
-// number of later blows, and the time and impulse of each. An absent number is NaN, as is jx if the
-// scene has no blow.
+// Reads a question from an array of numbers: those of the scene in the order of `columns`, the end
+// time, the number of later blows, and the time and impulse of each. An absent number is NaN, as is
+// jx if the scene has no blow.
 Question question_from(const double* asked) {
     SceneNumbers known;
     for (auto& number : known) {
@@ -60,7 +60,7 @@ Solution motion_of(const Question& of) {
     return simulate(of.scene, of.settings, of.end, [] {});
 }
 
-// The number of events of the last motion up to its last blow; 0 if there was no blow during it.
+// The number of events of the last motion up to and including its last blow; 0 without a blow.
 std::size_t events_until_blow() {
     const auto& events = solution.motion.events;
     std::size_t count = events.size();
@@ -68,8 +68,8 @@ std::size_t events_until_blow() {
     return count;
 }
 
-// The part of a question after the last blow of the last motion: a scene in the state before that
-// blow, with the impulse that the question has for it. Without a blow during the motion, the whole
+// The part of a question from the last blow of the last motion on: a scene in the state just before
+// that blow, with its impulse from the question. Without a blow during the motion, the whole
 // question.
 Question from_blow(const Question& of) {
     const std::size_t count = events_until_blow();
@@ -116,7 +116,7 @@ std::string json(const Values& values) {
     return json("[]", values, [](const auto& each) { return json(each); });
 }
 
-// The time of the last blow and the description of the motion after it.
+// The time of the last blow and the description of the motion after it, as members of an object.
 std::string json_of_description() {
     const Scene struck = from_blow(question).scene;
     const std::size_t count = events_until_blow();
@@ -161,9 +161,9 @@ extern "C" const char* ask(const double* asked, int in_words) {
     return answer.c_str();
 }
 
-// The first outcome that `ask` would report if only the last blow of the last motion were replaced;
-// or an error message. A motion is simulated only if the body is struck in the air, and `samples`
-// still samples the last motion of `ask`.
+// The first outcome that `ask` would report, or an error message, for a question that differs from
+// the last one only in its last blow. A motion is simulated only if the body is struck in the air,
+// and `samples` still samples the last motion of `ask`.
 extern "C" const char* first(const double* asked) {
     try {
         const Question struck = from_blow(question_from(asked));

@@ -1,4 +1,4 @@
-"""The blows that can be tried on a scene in a page, and the data and texts of that page."""
+"""The blows that a page offers to try on a scene, and the data and texts of that page."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from .film import body, columns, events, sample_times
 
 WIDE = 14.0  # width of the view [longer semi-axes]
 _STRENGTHS = 16  # ratio of the strongest blow to the weakest
-_PIXEL = 2.5e-4  # tolerance as a share of the width of the view
-_SAMPLES = 100  # number of samples of a motion that would need more than ten times as many
+_PIXEL = 2.5e-4  # tolerance as a fraction of the width of the view
+_SAMPLES = 100  # number of samples for a motion that would need more than ten times as many
 _STEPS, _EVENTS = 20_000, 200  # maximum numbers of steps and events of a motion
 _SLIDES = 240  # number of steps of a slider
 
@@ -29,7 +29,7 @@ def axes(scene: Scene) -> list[dict[str, Any]]:
     """Return the ranges and steps of the position d [m] and of the strength F [N s] of blows.
 
     Positions cover the width of the body in its initial orientation. The strongest blow, at the end
-    of this width, gives about three times the speed that carries the body over its tip.
+    of this width, gives the body about three times the speed that carries it over its tip.
     """
     reach = float(support(scene.theta + math.pi / 2, a=scene.a, b=scene.b))
     longer, shorter = max(scene.a, scene.b), min(scene.a, scene.b)
@@ -45,7 +45,7 @@ def axes(scene: Scene) -> list[dict[str, Any]]:
 
 
 def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) -> Impulse:
-    """Return the vertical blow of the scene, or one of medium strength, clipped to the ranges."""
+    """Return the scene's downward blow, or one of medium strength, clipped to the ranges."""
     own: Any = scene.impulse
     d, F = (own.dx, -own.jz) if own is not None else (0.75 * place["most"], 0.0)
     if F <= 0:
@@ -55,13 +55,13 @@ def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) ->
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
-    """Return the motion of a scene after a blow; its message states what a warning would."""
+    """Return the motion of a scene after a blow; problems go to its message, not to a warning."""
     how = replace(DEFAULTS, max_steps=_STEPS, max_events=_EVENTS)
     return Trajectory.computed(scene.replace(impulse=blow), how, np.array([0.0, t_end]))
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:
-    """Return the scene's parameters in words, and all other changed parameters by name."""
+    """Return the main parameters of a scene in words, and other non-default ones by name."""
     seldom = scene._changed().keys() - {"a", "b", "mass", "friction", "restitution", "slope"}
     facts = [
         filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
@@ -73,7 +73,7 @@ def card(scene: Scene, words: dict[str, str]) -> str:
 
 
 def code(scene: Scene, t_end: float) -> str:
-    """Return Python code for the simulation; {blow} is the first blow, {blows} the others."""
+    """Return Python code for the simulation, with placeholders for the first and later blows."""
     return (
         "import rolling_ellipse\n\n"
         "blow = {blow}\n"
@@ -92,7 +92,7 @@ def numbers(scene: Scene) -> dict[str, float | None]:
 def strip(motion: Trajectory) -> dict[str, Any]:
     """Return a motion for the player, in a window chosen for the body before the blow.
 
-    A motion that would need too many samples has `_SAMPLES` evenly spaced ones.
+    A motion that would need too many samples gets `_SAMPLES` evenly spaced ones.
     """
     scene = motion.scene
     longer, start = max(scene.a, scene.b), scene.initial_state

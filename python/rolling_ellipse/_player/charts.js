@@ -42,7 +42,7 @@ function ticksOf(low, high) {
   return Array.from({ length: count }, (_, i) => (first + i) * step);
 }
 
-/** Draw curves over time up to an end, each with name, colour and dash. Vertical lines mark the
+/** Draw curves over time from 0 to `end`, each with name, colour and dash. Vertical lines mark the
  * impacts and the current time. */
 export function paintCurves(ink, colours, canvas, curves, { low, high, end, now, impacts }) {
   const [left, top] = [44, 18], across = canvas.clientWidth - left - 14;

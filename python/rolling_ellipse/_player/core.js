@@ -33,7 +33,7 @@ export class Core {
     return answer;
   }
 
-  /** The arguments of a call: the numbers of a scene, the end time, and the blows. */
+  /** The numbers that a call passes: those of the scene, the end time, and the blows. */
   numbers(scene, end) {
     const { blows = [] } = scene, numbers = this.names.scene.map((name) => scene[name] ?? NaN);
     return [...numbers, end, blows.length, ...blows.flat()];
@@ -49,7 +49,7 @@ export class Core {
     return found;
   }
 
-  /** The first outcome after the last blow, as `ask` would report it; the motion of `ask` stays. */
+  /** The first outcome after the last blow, as `ask` would report it; keeps the motion of `ask`. */
   first(scene, end) {
     const answer = this.text(this.call("first", this.numbers(scene, end)));
     if (answer !== answer.toUpperCase()) throw new RangeError(answer);
@@ -71,7 +71,7 @@ export class Core {
     return { found, times, columns, track: trackOf(times, columns) };
   }
 
-  /** Alternating ends and middles of intervals. Events, and times just before them, are ends. */
+  /** Ends and middles of intervals in turn; events, and times just before them, are ends. */
   timesOf({ until, events }, theta) {
     if (!until) return Float64Array.of(0);
     const turn = Math.abs(this.samples([until]).theta[0] - theta);
@@ -85,7 +85,7 @@ export class Core {
   }
 }
 
-/** Columns for a track; between the two sides of a jump, a force has the mean of both values. */
+/** Columns for a track; in the middle of a jump, a force has the mean of both values. */
 function trackOf(times, columns) {
   const isEnd = (_, i) => i % 2 === 0, track = { t: times.filter(isEnd) };
   for (const name in columns) track[name] = columns[name].filter(isEnd);

@@ -1,17 +1,16 @@
 // The player with a hand that strikes the body, at rest or in motion, and a map of the outcomes of
-// all blows. The core computes motions and outcomes in the page. Needs all earlier modules.
+// all blows. The core computes motions and outcomes in the page. Needs all other modules.
 
 const STROBES = 8;
-const [LOW, HIGH] = [[-0.5, -3], [1.5, 5]]; // usual and farthest ends of the force axis [weights]
+const [LOW, HIGH] = [[-0.5, -3], [1.5, 5]]; // usual and farthest limits of the force axis [weights]
 const STEPS = { // columns and rows by which each key moves on the map
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1],
   Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
 };
 const CELLS = [48, 32]; // columns and rows of the map
-const COARSE = [8, 4, 2, 1]; // sizes of its cells, in turn
+const COARSE = [8, 4, 2, 1]; // sizes of its cells, from the first pass to the last
 const NEAR = 26; // distance within which a pointer grabs the hand [px]
-const BUDGETS = [10, 6]; // time per frame for cells of the map [ms]: usually, and
-// while numbers change
+const BUDGETS = [10, 6]; // time per frame for the map [ms]: usually, and while numbers change
 
 export class Explorer extends Player {
   /** Start with the core; if WebAssembly is missing or forbidden, only the film plays. */
@@ -28,7 +27,7 @@ export class Explorer extends Player {
   begin() {
     const { strips: [strip], given, axes, shape } = this.film, [width, height] = CELLS;
     Object.assign(this, { strip, axes, given: { ...given }, lowest: shape, fine: 2 });
-    Object.assign(this, { earlier: [], since: 0 }); // blows before the last one, and its time
+    Object.assign(this, { earlier: [], since: 0 }); // earlier blows, and time of the last one
     this.image = Object.assign(document.createElement("canvas"), { width, height });
     this.renew();
   }
@@ -55,7 +54,7 @@ export class Explorer extends Player {
     this.describe();
   }
 
-  /** Whether the body has no outcomes to map: rolling resistance brings it to rest. */
+  /** Whether the body has no outcomes to map, since rolling resistance brings it to rest. */
   get isMapless() {
     return this.film.scene.rolling_resistance > 0;
   }
@@ -79,7 +78,8 @@ export class Explorer extends Player {
     this.changeParts(Object.fromEntries(moved.map((k) => [k, this.part(k) + steps[k] / CELLS[k]])));
   }
 
-  /** Call `moved` while a pointer whose press `holds` accepts is down, and for taps on the map. */
+  /** Call `moved` when a pointer is pressed where `holds` accepts it, while it is held down, and
+   * for taps on the map. */
   grab(canvas, holds, moved) {
     let held = false, now = 0; // time of the motion when the pointer was pressed
     canvas.addEventListener("pointerdown", (event) => {
@@ -133,7 +133,7 @@ export class Explorer extends Player {
     return Math.min(1, Math.max(0, (this.given[name] - least) / (most - least)));
   }
 
-  /** Set the numbers to the values at fractions of the axes. */
+  /** Set numbers to the values at given fractions of their axes. */
   changeParts(parts) {
     this.change(Object.fromEntries(Object.entries(parts).map(([k, part]) => {
       const { name, least, most, step } = this.axis(k), count = (part * (most - least)) / step;
@@ -181,13 +181,13 @@ export class Explorer extends Player {
     this.change(this.givenOf(impulse));
   }
 
-  /** Whether the hand can strike at the time on the clock. */
+  /** Whether the hand can strike at the time shown on the clock. */
   get canStrike() {
     return this.now === this.since || this.now < this.strip.motion.end;
   }
 
-  /** Strike now: add a blow like the last one at the time on the clock, and remove later blows.
-   * Returns false if the hand cannot strike, or if the last blow is already at this time. */
+  /** Strike now: add a blow like the last one at the time shown on the clock, and remove later
+   * blows. Returns false if the hand cannot strike, or if the last blow is already at this time. */
   strike() {
     const { now, playing } = this, blows = this.blows();
     if (now === this.since || !this.canStrike) return false;
@@ -255,7 +255,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------ the words
 
-  /** Write what happens, and announce it if the sentences have changed. */
+  /** Write what happens, and announce it to screen readers if the sentences have changed. */
   tell() {
     const { headline, reasons } = this.found;
     const inWords = (sentences) => sentences.map((each) => this.say(...each)).join(" ");
@@ -279,7 +279,7 @@ export class Explorer extends Player {
       + (isCut ? this.say("forces_cut", { peak }) : "");
   }
 
-  /** Write what happens, and the place and strength of the blow at the sliders and the map. */
+  /** Write what happens, and the blow's place and strength beside the sliders and on the map. */
   describe() {
     const { d, F } = this.given;
     this.tell();
@@ -296,7 +296,8 @@ export class Explorer extends Player {
     this.host.dataset.blow = `${d} ${F}`;
   }
 
-  /** Python code: the first blow replaces {blow}, and an argument with the later blows {blows}. */
+  /** The Python code, with the first blow instead of {blow} and an argument with the later ones
+   * instead of {blows}. */
   code(lines = this.film.code) {
     const [[, first], ...later] = this.blows().map(([t, ...impulse]) => [t, this.codeOf(impulse)]);
     const pairs = later.map((pair) => `(${pair.join(", ")})`).join(", ");
@@ -312,7 +313,7 @@ export class Explorer extends Player {
     try {
       await navigator.clipboard.writeText(lines);
       button.textContent = this.say("copied");
-    } catch { // a page without access to the clipboard shows the code instead
+    } catch { // without access to the clipboard, the page shows the code
       const shown = Object.assign(document.createElement("pre"), { textContent: lines });
       button.replaceWith(shown);
       getSelection().selectAllChildren(shown);
@@ -321,7 +322,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------- the map
 
-  /** Paint the map; while it is in view, compute more of its cells, now and in later frames. */
+  /** Paint the map; while it is in view, compute more cells, up to a time and in later frames. */
   paintMap(until) {
     if (this.isMapless) return;
     const done = !this.fills || this.fill(until), ink = sized(this.map, this.map.clientHeight);
@@ -339,7 +340,7 @@ export class Explorer extends Player {
     });
   }
 
-  /** Colour cells of the map, coarse ones first, until a time; true if none are left. */
+  /** Colour cells of the map up to a time, coarse ones first; returns true if none are left. */
   fill(until) {
     const axes = [this.axis(0), this.axis(1)], others = { ...this.given };
     for (const { name } of axes) delete others[name];
@@ -362,14 +363,13 @@ export class Explorer extends Player {
     return false;
   }
 
-  /** The colour and opacity of a cell, from its first outcome, which the legend then shows. */
+  /** The colour and opacity of a cell, from its first outcome; shows that outcome in the legend. */
   colourOf(given) {
     const { core, end, outcomes } = this.film, first = core.first(this.sceneOf(given), end);
     this.box.querySelector(`[data-outcome=${first}]`).hidden = false;
     return [outcomes[first], 1];
   }
 
-  /** The name of an axis of the map. */
   labelOf(k) {
     return this.say(["map_places", "map_strengths"][k]);
   }
@@ -401,7 +401,7 @@ export class Explorer extends Player {
     text(ink, colours.plum, words, top[0] + 17, top[1] + 4, "left");
   }
 
-  /** Set the shape of the picture for a width, with 34 pixels for the numbers of the ruler. */
+  /** Set the shape of the picture for a width, with 34 pixels for the numbers below the ground. */
   fit(width) {
     const [left, right, , top] = this.strip.window;
     this.film.shape = Math.max(this.lowest, top / (right - left) + 34 / width);
@@ -442,7 +442,7 @@ function within({ least, most, step }, value) {
   return Math.min(most, Math.max(least, Number(value.toFixed(decimals)))) + 0;
 }
 
-/** The cells of the map with their sizes, from the largest size to the smallest. */
+/** The cells of the map with their sizes, the largest first. */
 function* cellsInTurn() {
   for (const size of COARSE)
     for (let j = 0; j < CELLS[1]; j += size)

@@ -1,4 +1,4 @@
-"""A page on which a blow is moved over a body and its motion appears at once, without a kernel."""
+"""A page that shows at once how a body moves as the user changes a blow, without a kernel."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ class Explorer(FieldsOnly):
         return None
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the page to a file, with the errors of `to_html`.
+        """Write the page to a file; the errors are those of `to_html`.
 
         Examples
         --------
@@ -186,7 +186,7 @@ class Explorer(FieldsOnly):
         return self._fragment("Explorer")
 
     def _fragment(self, starts: str, module: str = "", **more: Any) -> str:
-        """Return the page's content, with the name of the JavaScript class that starts it.
+        """Return the page's content; the JavaScript class named `starts` starts it.
 
         The class may be defined in `module`, and `more` has further data for it. The content
         includes the film of the first blow, for browsers that cannot run the core.

@@ -21,21 +21,21 @@ from .._pictures.sampling import halve
 from .page import document, fragment
 
 _PIXEL = 2.5e-5  # tolerance over the width of the view: 1/20 pixel if the width is 2000 pixels
-_HEAD, _FOOT = 0.035, 0.035  # free heights for a line of text and the ruler, as shares of the width
+_HEAD, _FOOT = 0.035, 0.035  # heights for a line of text and the ruler, as fractions of the width
 _TALLEST = 0.42  # maximum height of a film over its width; half of it for each of several motions
 MOST_SAMPLES = 20_000  # maximum number for one motion: 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
 FORCES = ("normal_force", "friction_force")
 _MIDDLES = {name: f"{name}_middle" for name in FORCES}
-# Points of an interval at which a curve is compared with the motion. They are irregular, so that a
-# motion whose period divides the intervals does not look like a straight line.
+# Fractions of an interval at which a curve is compared with the motion. Irregular spacing keeps a
+# motion whose period divides the intervals from looking like a straight line.
 _WITHIN = np.array([0.13, 0.31, 0.5, 0.74, 0.9])
-_FORCE = 0.005  # error over force + weight: at most a pixel in a plot with 84 pixels per weight
+_FORCE = 0.005  # error over (force + weight): at most a pixel in a plot with 84 pixels per weight
 _FIRST = 17  # initial number of intervals
 
 
 def track(motion: Trajectory, parts: list[tuple[float, float]], tolerance: float) -> dict[str, Any]:
-    """Return the parts (start, end [s]) of a motion as packed columns, and each part's first index.
+    """Return the parts (start, end [s]) of a motion as packed columns, and the first index of each.
 
     Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m]. A
     motion that needs more than `MOST_SAMPLES` samples is rejected. Parts after its end have one
@@ -72,7 +72,7 @@ def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
 
 
 def _middles(motion: Trajectory) -> dict[str, FloatArray]:
-    """Return forces midway between samples and at the end; across a jump, the mean of its sides."""
+    """Return forces midway between samples and at the end; in a jump, the mean of both sides."""
     t = motion.t
     between, jumps = motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), np.diff(t, append=np.inf)
     middles = {}
@@ -94,8 +94,8 @@ def sample_times(
     """Return times from `begin` to `end` between which cubics are off by at most `tolerance` [m].
 
     If more than `most` times are needed, return None. Parabolas through the forces at the times and
-    midway between them are also close to the forces, if at most half of `most` times suffice for
-    that. The times include all events, and the doubles just before them.
+    midway between them are also accurate, if at most half of `most` times suffice for that. The
+    times include all events, and the doubles just before them.
     """
     jumps = [event.t for event in motion.events if begin < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
@@ -212,7 +212,7 @@ def film_html(animation: RollingAnimation) -> str:
 
 
 def body(motion: Trajectory) -> dict[str, Any]:
-    """Return the body, its ground, its blows and the unit of length for it, as JSON types."""
+    """Return the body, its ground, its blows and a suitable unit of length, as JSON types."""
     scene = motion.scene
     return {
         "a": scene.a,

@@ -1,4 +1,4 @@
-"""HTML with the player: a fragment for notebooks, a page for files, and their texts."""
+"""HTML with the player, as a fragment for notebooks or a page for files, and its texts."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ def fragment(
     If scripts are disabled, the pictures and the text remain. A page may contain the same fragment
     several times. If `data` has no words, the English ones are added. `around` is HTML around the
     player. `starts` is the class to start; `module` is JavaScript that defines it, if the package
-    does not. The `div` stops all key events, and its JupyterLab marker keeps the notebook from
-    acting on keys.
+    does not. The player stops all key events, and a marker for JupyterLab on the `div` keeps the
+    notebook from acting on keys.
     """
     scripts, sheets = SCRIPTS.get(starts, SCRIPTS["Explorer"])
     texts = data.get("words") or words("en")
@@ -108,7 +108,7 @@ def core() -> str:
 def words(language: str | Mapping[str, str]) -> dict[str, str]:
     """Return the table of a language, or a copy of a mapping with the same keys.
 
-    A text must not use a placeholder that the English text lacks.
+    A text must use no placeholder that the English text lacks.
     """
     if isinstance(language, str):
         return dict(table(choice("language", language, LANGUAGES)))

@@ -82,7 +82,7 @@ export class Player {
     this.slider = find(".seek input");
     this.clock = find(".time");
     this.select = find("select");
-    const { speed, fastest = Infinity } = this.film; // beyond it bodies seem to roll backwards
+    const { speed, fastest = Infinity } = this.film; // faster bodies seem to roll backwards
     for (const rate of new Set([...RATES, 1 / speed].sort((one, other) => one - other)))
       if (rate === 1 || rate * speed <= fastest)
         this.select.add(new Option(`× ${+(rate * speed).toPrecision(3)}`, rate, rate === 1,
@@ -103,7 +103,7 @@ export class Player {
     this.marks();
   }
 
-  /** Mark every event on the slider; events at the same point share a mark. */
+  /** Mark every event on the slider; events at nearly the same point share a mark. */
   marks() {
     const seek = this.slider.parentNode;
     seek.querySelectorAll(".mark").forEach((mark) => mark.remove());
@@ -174,8 +174,8 @@ export class Player {
     this.toggle.setAttribute("aria-label", this.toggle.title);
   }
 
-  /** Draw frames while the film plays and is in view. At the end it rests for a second, then starts
- * again. */
+  /** Draw frames while the film plays and is in view. At its end the film pauses for a second, then
+   * starts again. */
   run() {
     if (this.running || !this.playing || this.seen === false) return;
     this.running = true;
@@ -207,7 +207,7 @@ export class Player {
   draw() {
     this.slider.value = this.long > 0 ? this.shown(this.t) / this.long : 0;
     const text = this.t.toFixed(Math.max(3, this.film.decimals));
-    this.now = Number(text); // the bodies are drawn for the time on the clock
+    this.now = Number(text); // the bodies are drawn for the time shown on the clock
     this.clock.textContent = this.say("clock", { t: text });
     this.slider.setAttribute("aria-valuetext", this.clock.textContent);
     this.waiting ||= requestAnimationFrame(() => { this.waiting = 0; this.paint(); });
@@ -258,7 +258,7 @@ export class Player {
       name: this.film.strips[i].label }).trim()).join("; ");
   }
 
-  /** The text of a key in the page's language, with values instead of the names in braces. */
+  /** The text of a key in the page's language, with values in place of the names in braces. */
   say(key, values = {}) {
     return this.film.words[key].replace(/\{(\w+)\}/g, (_, name) => round(values[name]));
   }

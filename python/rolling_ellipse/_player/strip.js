@@ -1,9 +1,9 @@
 // Draws one strip of the picture: a body in a given state, on ground with a ruler. Needs track.js.
 
 export const [SLIDING, FLIGHT] = [1, 2]; // codes of Mode
-const SHOWN = 6000; // number of points drawn of a trace: earlier ones are out of sight
+const SHOWN = 6000; // largest number of points drawn of a trace; earlier ones are out of sight
 const ROW = 17; // height of a line of a caption [px]
-const FADES = 1.2; // how long a blow or an event is visible [seconds of film]
+const FADES = 1.2; // how long a blow or an event stays visible [seconds of film]
 
 /** Maps points of a strip, in its ground axes, to pixels (`at`) and back (`ground`). */
 export class View {
@@ -36,8 +36,7 @@ export function paintStrip(ink, colours, strip, at, view, shown) {
   paintTexts(ink, colours.ink, shown);
 }
 
-/** Write the clock and the caption. The caption is beside the clock, or below it if strips are side
- * by side. */
+/** Write the clock, and the caption beside it or, if strips are side by side, below it. */
 function paintTexts(ink, colour, { caption, clock, beside, floor, width }) {
   text(ink, colour, clock, width - 12, floor + 20, "right");
   const room = width - 24 - (beside || !clock ? 0 : ink.measureText(clock).width + 12);
@@ -61,7 +60,6 @@ export function path(ink, points) {
   for (const point of points) ink.lineTo(...point);
 }
 
-/** Draw the current path as a line. */
 export function stroke(ink, strokeStyle, lineWidth) {
   Object.assign(ink, { strokeStyle, lineWidth });
   ink.stroke();
@@ -145,13 +143,13 @@ function paintGround(ink, colours, strip, view, { floor, width, tall }) {
   }
 }
 
-/** The last SHOWN states of a trace up to now, and the state now. */
+/** The last SHOWN states of a trace, and the current state. */
 function past({ trace }, at) {
   const end = lastUntil(at.t, trace.length, (k) => trace[k].t) + 1;
   return [...trace.slice(Math.max(0, end - SHOWN), end), at];
 }
 
-/** Draw the parts of the ground on which the contact has slid. */
+/** Mark the parts of the ground on which the contact has slid. */
 function paintSkids(ink, colours, strip, at, view) {
   ink.beginPath();
   let slid = false;

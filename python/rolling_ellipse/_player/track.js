@@ -1,5 +1,5 @@
-// A motion: samples with their rates, and cubics between them. Lengths are in metres, times in
-// seconds; x is measured along the ground and z normal to the ground.
+// A motion: samples with their rates, and cubics between them. Lengths are in metres and times in
+// seconds; x is measured along the ground and z normal to it.
 
 const KINDS = { u2: Uint16Array, f4: Float32Array, f8: Float64Array };
 
@@ -11,7 +11,6 @@ export function unzipped(text) {
   return new Response(new Blob([bytesOf(text)]).stream().pipeThrough(unzip));
 }
 
-/** Unpack columns of numbers. */
 export function unpacked(columns) {
   return Object.fromEntries(Object.entries(columns).map(([name, { kind, low, step, data }]) =>
     [name, Float64Array.from(new KINDS[kind](bytesOf(data).buffer), (n) => low + step * n)]));
@@ -28,8 +27,8 @@ export function lastUntil(t, count, time) {
   return first;
 }
 
-/** One motion, which gives its state at any time. Positions are cubics between samples of position
- * and rate; forces are parabolas through two samples and the value midway between them. */
+/** One motion, which gives its state at any time. Positions are cubics through two samples and
+ * their rates; forces are parabolas through two samples and the value midway between them. */
 export class Track {
   constructor(columns, a) {
     Object.assign(this, columns, { a });
