@@ -1,7 +1,7 @@
 """Time and bytes per motion of large runs that write files: python benchmarks/bench_batches.py
 
-The figures help to plan a large run: time on one core and bytes per motion, for exact motions and
-for motions with slips and jumps, and the rate of a pool of processes.
+Exact motions, and motions with slips and jumps, are timed on one core. The rate of a pool of
+processes is measured for exact motions.
 """
 
 import argparse
@@ -23,7 +23,7 @@ STARTS = {  # friction and omega [rad/s]: "exact" only rocks and rolls, "contact
     "exact": (10.0, np.linspace(0.5, 3.0, 200_000)),
     "contact": (1.0, np.linspace(5.5, 6.5, 5_000)),
 }
-MORE = 101  # number of samples of the larger files
+MORE = 101  # samples per motion in the run that measures bytes per sample
 
 
 def written(kind: str, samples: int = 1, workers: Any = 1) -> tuple[float, float]:
@@ -44,7 +44,6 @@ def written(kind: str, samples: int = 1, workers: Any = 1) -> tuple[float, float
 
 
 def main() -> None:
-    """Measure, print and save the figures."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--save", type=Path, help="folder for the figures, as JSON")
     chosen = options.parse_args()

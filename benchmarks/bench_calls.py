@@ -1,12 +1,12 @@
-"""Cost of calls, of exact rolling and of steps of integration, in tables of ratios.
+"""Cost of calls, of exact rolling and of integration steps, in tables of ratios.
 
     python benchmarks/bench_calls.py [--rounds 20] [--only flow]
 
 All cases are timed in turn, once in each of many rounds, and the shortest time of a case counts.
 Since machines and their load differ, compare only ratios (to the first line of a table) within one
-run. A line with the words "the core" has the time of the core alone; the rest of the whole call is
-spent in Python. Imports of the package and of NumPy are timed in new interpreters. bench_peers.py
-measures the cost of accuracy.
+run. Lines marked "the core" time the compiled core alone; the rest of a call is spent in Python.
+Imports of the package and of NumPy are timed in new interpreters. bench_peers.py measures time
+against accuracy.
 """
 
 import subprocess
@@ -85,7 +85,7 @@ def calls() -> dict[str, Case]:
 
 # ---------------------------------------------------------------------------- many motions
 
-MANY = 2000  # motions of a batch
+MANY = 2000  # motions per batch
 LEVEL = {"a": 2.0, "b": 1.0, "friction": 0.3, "restitution": 0.5, "z": 3.0}
 
 
@@ -121,14 +121,14 @@ def batches() -> dict[str, Case]:
 
 # ---------------------------------------------------------------------------- exact rolling
 
-STATES = 2000  # motions in one call with arrays, each of which needs a set-up
+STATES = 2000  # motions in one call with arrays, each with its own set-up
 SAMPLES = 1_000_000
 COLUMNS = ("theta", "omega", "x")
 HALF_TURNS = 1.37
 
 
 def starts() -> dict[str, dict[str, Any]]:
-    """The starts of the cases, by name."""
+    """Arguments of `flow`, by the name of the case."""
     speed = thresholds(2.0, 1.0).roll_over_speed
     return {
         "R: ordinary rotation": R,
@@ -150,7 +150,6 @@ def among_many(start: dict[str, Any], t: float) -> Case:
 
 
 def samples(half_turns: float) -> Case:
-    """A million samples of one motion."""
     times = np.linspace(0, end_time(Scene(**R), half_turns), SAMPLES)
     return Case(partial(flow, times, **R), SAMPLES)
 
@@ -161,7 +160,7 @@ def flows() -> dict[str, dict[str, Case]]:
         turns = HALF_TURNS + 1e9 * ("1e9" in name)
         t = end_time(Scene(**start), turns)
         one[name] = Case(partial(flow, t, **start))
-        # near a singular start a relative change of omega by 1e-12 is not small
+        # near the separatrix a relative change of omega by 1e-12 is not small
         if "separatrix" not in name:
             many[name] = among_many(start, t)
     swing, speeds, grid = R | {"omega": 1.0}, np.linspace(2.5, 4.0, STATES), np.linspace(0, 8, 1001)
@@ -182,8 +181,8 @@ def flows() -> dict[str, dict[str, Case]]:
     kept: dict[str, Any] = {}
 
     def into_known_memory(case: Case) -> Case:
-        """The same call, whose answer is stored until the next one replaces it. The call after that
-        reuses its memory."""
+        """The same call, but each answer is kept until the next one replaces it, so that later
+        calls reuse its memory."""
         return Case(lambda: kept.update(answer=case.call()), case.count)
 
     of_many = {
@@ -194,7 +193,7 @@ def flows() -> dict[str, dict[str, Case]]:
         "filling as much fresh memory": Case(
             lambda: [np.full(SAMPLES, 1.0) for _ in COLUMNS], SAMPLES
         ),
-        # lower bound on the time of every method
+        # lower bound on the time per sample
         "np.copyto of 3 doubles": Case(partial(np.copyto, target, source), SAMPLES),
     }
     return {
@@ -226,8 +225,8 @@ HOW: dict[str, dict[str, Any]] = {
 
 
 def steps() -> dict[str, dict[str, Case]]:
-    """Tables of one evaluation and one step in rolling; and for each method a table that compares
-    steps of rolling with steps in five coordinates."""
+    """Tables of one evaluation and of one step of the model "rolling", and for each method a table
+    that compares a step of this model with steps of the model "multipliers"."""
     theta, omega = np.random.default_rng(0).uniform(-1, 1, (2, SAMPLES))
     equation = partial(_core.rolling_equation, ROCKING.core, theta, omega)
     evaluation, step = {"equation and Jacobian, 1e6 states": Case(equation, SAMPLES)}, {}

@@ -1,11 +1,11 @@
 """Cost of motions with impacts, slip and flight: python benchmarks/bench_contact.py
 
-Problems with known answers (`rolling_ellipse.benchmark`) are solved with `simulate`, and with
-SciPy's solve_ivp (DOP853) as `Problem.ode` shows: arc by arc. Right-hand sides use plain floats,
-which take a fifth of the time of NumPy. Both solvers give the events, and the states at the same
-1001 times. SciPy integrates flights, too; both solvers use the package's impacts. Before timing,
-each motion is compared with the known answer; if the events differ, the table lists them instead of
-times. Every case runs in each of many rounds; compare ratios within one run.
+Problems with known answers (`rolling_ellipse.benchmark`) are solved with `simulate`, and arc by arc
+with SciPy's solve_ivp (DOP853) as `Problem.ode` shows. The right-hand sides for SciPy use plain
+floats, which take a fifth of the time of NumPy. Both solvers compute the events and the states at
+1001 times. SciPy integrates flights, too, but uses the package's impacts. Before timing, each
+motion is compared with the known answer; if the events differ, the table lists them instead of
+times. Every case runs in each of many rounds; compare ratios only within one run.
 """
 
 import math
@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 
 PROBLEMS = ("slide.reverse", "leave.slip_then_lift", "hit.bounce", "law.which")
 TOLERANCES = (1e-10, 1e-6)  # values of rtol; atol is a hundredth of rtol
-SAMPLES = 1001  # number of samples in the package's output
+SAMPLES = 1001  # number of samples that `simulate` returns by default
 FLOATS = SimpleNamespace(sin=math.sin, cos=math.cos, sqrt=math.sqrt, abs=abs, stack=np.array)
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 
@@ -42,7 +42,7 @@ def by_package(one: benchmark.Problem, t: Any) -> Found:
 
 
 def by_scipy(one: benchmark.Problem, rtol: float) -> Found:
-    """Follow the motion from event to event; a sample at an event shows the state after it."""
+    """Integrate from event to event; a sample at an event has the state after the event."""
     arc, events, counts = one.ode(FLOATS), [], np.zeros(2, int)
     times = np.linspace(0.0, one.t_end, SAMPLES)
     states = np.empty((6, SAMPLES))
@@ -72,7 +72,7 @@ def compared(one: benchmark.Problem, found: Found) -> str:
 
 
 def compare(one: benchmark.Problem, rounds: int) -> None:
-    """Print the table of a problem; ratios compare the least times with that of the first line."""
+    """Print the table of a problem, with the ratio of each least time to that of the first line."""
     cases: dict[str, Callable[[], Any]] = {
         f"simulate, {SAMPLES} samples": lambda: by_package(one, one.t_end),
         "simulate, 1 sample": lambda: by_package(one, [one.t_end]),

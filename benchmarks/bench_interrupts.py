@@ -1,13 +1,13 @@
-"""Delay of Ctrl-C in long work: in single runs of every model, in batches, in a notebook.
+"""Delay of Ctrl-C in long work: single runs of every model, batches, and a notebook.
 
     python benchmarks/bench_interrupts.py [--tries 50] [--only WORDS]
 
 Each kind of work is started and interrupted many times, at moments spread over half a second. The
-table has the median, the 95th percentile and the longest time from the signal to the
+table shows the median, the 95th percentile and the maximum of the time from the signal to the
 KeyboardInterrupt. A later call must give the same result as before, bit for bit. The exit code is 1
-if this result differs, or if a 95th percentile is more than 200 ms. In the notebook the traceback
-is one line, since Jupyter takes longer to show the source. The last line of the table has the time
-with the source, which does not affect the exit code. Run it on an otherwise idle machine.
+if this result differs, or if a 95th percentile is more than 200 ms. In the notebook, tracebacks are
+cut to one line, since Jupyter takes longer to show source code. The last line of the table is the
+delay with source code, which does not affect the exit code. Run it on an otherwise idle machine.
 """
 
 import argparse
@@ -43,7 +43,7 @@ STEEP = Scene(2.0, 1.0, slope=0.3, omega=3.0, friction=0.4, restitution=0.5)
 
 
 def again(call: Callable[[], Any]) -> Callable[[], Any]:
-    """Call a short function a thousand times."""
+    """A function that calls a short function a thousand times."""
     return lambda: [call() for _ in range(1000)]
 
 
@@ -91,7 +91,7 @@ WORK: dict[str, Callable[[], Any]] = {
 TIMES = np.linspace(0.0, 500.0, 2_000_000)
 FORCES = np.linspace(1.0, 2.0, 20_000_000)
 LISTED = FORCES[::2].tolist()
-IN_NOTEBOOK = {  # the first line measures Jupyter's own time
+IN_NOTEBOOK = {  # the first entry measures Jupyter's own delay
     "notebook, a loop of Python": "while True: pass",
     "notebook, rk4": "rl.simulate(rl.scenes.rolling, [1e5], model='rolling', method='rk4', "
     "step=1e-4, max_steps=2**31 - 1)",
@@ -102,7 +102,7 @@ CHECK = "rl.simulate(rl.scenes.drop, 2.0).theta.tobytes().hex()"
 
 
 def delay(call: Callable[[], Any], after: float) -> float:
-    """Time from Ctrl-C, sent `after` seconds into a call, to its end [s]."""
+    """Time from Ctrl-C, sent `after` seconds into a call, to the end of the call [s]."""
     # the alarm calls Python's SIGINT handler
     usual = signal.signal(signal.SIGALRM, signal.default_int_handler)
     begin = time.perf_counter()
@@ -122,7 +122,7 @@ def usable() -> bytes:
 
 
 class Notebook:
-    """A kernel that is started in the same way as by Jupyter."""
+    """A kernel, started as Jupyter starts one."""
 
     def __init__(self) -> None:
         self.manager, self.client = start_new_kernel(kernel_name="python3")
@@ -138,7 +138,7 @@ class Notebook:
         return str(reply["content"]["user_expressions"]["v"]["data"]["text/plain"])
 
     def delay(self, code: str, after: float) -> float:
-        """Time from the button "Interrupt" to the reply [s]."""
+        """Time from the interrupt to the reply [s]."""
         # with stop_on_error, Jupyter would drop the next request
         asked = self.client.execute(code, stop_on_error=False)
         self.wait(self.client.get_iopub_msg, asked, "execute_input")
@@ -151,7 +151,7 @@ class Notebook:
         return found
 
     def wait(self, receive: Callable[..., dict[str, Any]], asked: str, kind: str) -> Any:
-        """The content of the first message of a kind in reply to a request."""
+        """The content of the first message of type `kind` in reply to the request `asked`."""
         while True:
             message = receive(timeout=60)
             if message["msg_type"] == kind and message["parent_header"].get("msg_id") == asked:

@@ -1,13 +1,13 @@
 """The package compared with third-party integrators: python benchmarks/bench_peers.py
 
-Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its headers); missing
-ones are named. All integrate theta, omega and x with compiled right-hand sides and with a series of
-tolerances or steps, in turn (`rolling_ellipse.work_precision`). The error of a run is the largest
-difference, at the samples and at the end, from a reference with at least 40 digits. The preparation
-of a new scene, with its compilation, is timed separately. A table before the races of a scene has
-the times of three calls of each contender: an empty call (a millionth of the span), a call with a
-known scene, and a call with a new scene, which includes its preparation. Since machines and their
-load differ, compare only ratios within one run.
+Installed libraries take part, and missing ones are named. The extra "peers" installs all but
+Boost.odeint, which needs g++ and the Boost headers. All integrate theta, omega and x with compiled
+right-hand sides and a series of tolerances or steps (`rolling_ellipse.work_precision`). The error
+of a run is the largest difference, at the samples and at the end, from a reference with at least 40
+digits. The preparation of a new scene, including compilation, is timed separately. Before the races
+of a scene, a table shows the times of three calls of each contender: an empty call (a millionth of
+the span), a call with a known scene, and a call with a new scene, including its preparation. Since
+machines and their load differ, compare only ratios within one run.
 """
 
 import argparse
@@ -51,8 +51,8 @@ COLUMNS = ("theta", "omega", "x")
 WIDTH = 14  # width of a column in characters
 EMPTY = 1e-6  # span of an empty call, as a fraction of the whole span
 SETTING = 1e-6  # tolerance of the calls with known and new scenes
-BEHIND = " behind"  # follows a ratio below 1
-AHEAD = " is ahead of "  # words of a verdict if a peer leads
+BEHIND = " behind"  # appended to a ratio below 1
+AHEAD = " is ahead of "  # follows the name of a leading peer in a verdict
 
 
 def in_40_digits(scene: Scene) -> Callable[[Any], Any]:
@@ -84,8 +84,8 @@ def by_series_in_60_digits(scene: Scene) -> Callable[[Any], Any]:
 
 
 def end_of(scene: Scene, half_turns: float) -> float:
-    """Time in which a scene makes a number of half turns or half swings [s]. On a slope, half turns
-    are counted from the start."""
+    """Time of a number of half turns or half swings [s]. Downhill, the time until theta has grown
+    by this number of half turns."""
     with suppress(ValueError):  # a run downhill does not repeat itself
         return half_turns * period(scene) / 2
     low, high = 0.0, 1e3
@@ -154,13 +154,13 @@ def commit() -> str:
 
 
 def microseconds(seconds: float) -> str:
-    """Text of a time in microseconds: to three digits, or to a whole number from 1000 on."""
+    """A time in microseconds as text, to three digits or, from 1000 on, to a whole number."""
     return f"{seconds * 1e6:.3g}" if seconds < 1e-3 else f"{seconds * 1e6:.0f}"
 
 
 def table(found: WorkPrecision) -> str:
-    """A row for each contender and a column for each error, with the best ratios in the last
-    row."""
+    """A row for each contender and a column for each bound on the error. The last row has the ratio
+    of the best peer to the best of the package."""
     least = {decade: found.least(decade) for decade in DECADES}
     lines = [f"{'[us], least; error <=':28}" + "".join(f"{d:{WIDTH}.0e}" for d in DECADES)]
     lines[0] += f"{'best error':>12}{'set-up [ms]':>13}"
@@ -180,9 +180,9 @@ def table(found: WorkPrecision) -> str:
 
 
 def factor(found: WorkPrecision, decade: float) -> str:
-    """The best peer's time over the package's best, and whether a peer is ahead.
+    """The best peer's time divided by the package's best, and whether a peer is ahead.
 
-    A star says that some contenders were not run.
+    A star means that some contenders were not run.
     """
     others = {run.name for run in found.runs if "peer" in run.tags}
     least = found.least(decade)

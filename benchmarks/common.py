@@ -59,7 +59,7 @@ def print_machine(rounds: int) -> None:
 
 
 def end_time(scene: Scene, half_turns: float) -> float:
-    """Time in which a scene makes a number of half turns or half swings [s]."""
+    """Time of a number of half turns or half swings [s]."""
     return half_turns * period(scene) / 2
 
 

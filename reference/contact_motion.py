@@ -5,55 +5,54 @@ judge_contact.py checks random scenes with it. The module needs only gmpy2 and s
 formula with the package.
 
 Motion. x is along the ground, z away from it, and theta clockwise. The ground slopes down by alpha.
-Forces are per mass, with k^2 = I/m. The touching point of the body is P(phi) = (a sin phi, -b cos
-phi). With w = |dP/dphi|, c^2 = a^2 - b^2, the centre is h above the ground and o behind the
+Forces are per unit mass, with k^2 = I/m. The contact point on the body is P(phi) = (a sin phi, -b
+cos phi). With w = |dP/dphi| and c^2 = a^2 - b^2, the centre is h above the ground and o behind the
 contact:
 
     w^2 = a^2 cos^2 phi + b^2 sin^2 phi,   tan theta = (b/a) tan phi,   phi' = omega w^2 / (a b)
     h = a b / w,   o = dh/dtheta = c^2 sin phi cos phi / w,   r = w^3 / (a b)                    (1)
 
-r is the radius of curvature. The ground acts with N and F per mass:
+r is the radius of curvature. The ground acts with the forces N and F:
 
     x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - (o + q) N              (2)
 
-The contact is a small patch. Within the patch, N acts ahead of the touching point by the lever of
-rolling resistance delta. This is a couple q N against the turning, with q = delta sign omega. A
-body that does not turn is held by a couple of up to delta N in either sense. The slip is v = x' - h
-omega. Without pressure the gap z - h would open with the acceleration -c, where c = g cos alpha +
-(r - h) omega^2. A mode ends when one of its margins, listed last, reaches zero; with delta > 0, q
-omega is one more margin of rolling and sliding:
+The contact is a small patch. Rolling resistance shifts N within the patch, ahead of the contact
+point by the lever delta. This is a couple q N against the rotation, with q = delta sign omega. A
+body that does not rotate is held by a couple of up to delta N in either direction. The slip is v =
+x' - h omega. Without a normal force the gap z - h would open with the acceleration -c, where c = g
+cos alpha + (r - h) omega^2. A mode ends when one of its margins reaches zero. The margins are at
+the end of each entry; with delta > 0, q omega is one more margin of rolling and sliding:
 
     rolling   v = 0: (k^2 + h^2 + o (o + q)) omega' = h g sin alpha - o h omega^2 - (o + q) c, N and
               F by (2); mu N - F, mu N + F; N, where mu is infinite
     sliding   s = sign v: F = -mu s N, N = c / B, B = 1 + o (o + q - mu s h) / k^2; s v, c, B.
               Its limit for infinite mu: N = 0, F = k^2 c / (h o), where s o < 0; s v, c
     flight    N = F = 0; z - h
-    held      omega = 0 for a time, N = g cos alpha: at rest with F = -g sin alpha for ever, or
-              sliding with F = -mu s N; s v
+    held      omega = 0, N = g cos alpha: at rest for ever with F = -g sin alpha, or sliding with
+              F = -mu s N; s v
 
-If slip or turning is zero, modes without it and modes with it in either direction are tried. A mode
-is possible if its N and B are positive, if a slip and a turning that start grow in their assumed
-directions, and if neither friction nor the couple is larger than available. If no mode is possible,
-the body flies if c <= 0 and otherwise jams, as does a slide with B < 0 < c. If several modes are
-possible, the motion is undecided. F and N jump when omega changes its sign, and slip may start
-then. The change of sign is not an event, but rest is. Without friction, the slip changes its sign
-without an event.
+If slip or omega is zero, modes without it and modes with it in either direction are tried. A mode
+is possible if its N and B are positive, if a slip or rotation that starts grows in its assumed
+direction, and if friction and the couple are within their limits. If no mode is possible, the body
+flies if c <= 0 and otherwise jams, as does a slide with B < 0 < c. If several modes are possible,
+the motion is undecided. When omega changes sign, F and N jump, and slip may start. The change of
+sign is not an event, but rest is. Without friction, a change of sign of the slip is not an event.
 
-An impact adds up impulses per mass along and away from the ground with Coulomb's law, in pieces on
-which v and u = z' - o omega change linearly. It ends when the work done since u = 0 is e^2 times
-the work absorbed before (W. J. Stronge, Proc. R. Soc. A 431 (1990) 169). Unlimited friction first
-ends the slip, as far as this is possible without a pulling force. Rebounds below 1e-6 sqrt(g min(a,
-b)) of a body dropped flat are summed, after which it rests; other scenes end before rebounds fall
-to a thousand times that.
+An impact accumulates impulses per unit mass along and away from the ground with Coulomb's law, in
+pieces on which v and u = z' - o omega change linearly. It ends when the work done since u = 0 is
+e^2 times the work absorbed before (W. J. Stronge, Proc. R. Soc. A 431 (1990) 169). Unlimited
+friction first ends the slip, as far as this is possible without a pulling force. If a body is
+dropped flat, rebounds slower than 1e-6 sqrt(g min(a, b)) are summed, after which it rests. Other
+scenes end before rebounds are slower than a thousand times that.
 
-Method. Taylor series in time of (1) and (2) by the recurrences for products, quotients and roots
-(A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients determine the size of
-each step. The first event of a step is the first root of polynomials, located without sampling:
-Bernstein coefficients that do not change sign exclude a root, one change means exactly one root,
-and otherwise the interval is halved. If s v, z - h or q omega starts at zero, those zeros are
-divided out: one if slip, turning or rebound starts with a speed or a jump of the force, two if
-rolling turns to slip or a gap opens at once, three if a slide lifts off. This resolves the shortest
-slips.
+Method. The Taylor series of (1) and (2) in time follow from recurrences for products, quotients and
+roots (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients determine the
+size of each step. The first event of a step is the first root of a margin, which is a polynomial.
+Roots are located without sampling: Bernstein coefficients that do not change sign exclude a root,
+one change means exactly one root, and otherwise the interval is halved. If s v, z - h or q omega
+starts at zero, its zeros at the start are divided out: one if slip, rotation or rebound starts with
+a speed or a jump of the force, two if rolling turns to slip or a gap opens at once, three if a
+slide lifts off. This resolves the shortest slips.
 """
 
 import math
@@ -73,11 +72,12 @@ LEAST_REBOUND = 1e-3  # least rebound speed / sqrt(g min(a, b)) in all other sce
 
 
 class Undecided(Exception):
-    """Raised for a scene that is too close to one of another kind, or is not modelled here."""
+    """Raised for a scene that is too close to another kind of motion, or is not modelled here."""
 
 
 class Scene(NamedTuple):
-    """Inputs of one motion: doubles in the table, mpfr when perturbed; None as in the package."""
+    """Inputs of one motion: doubles in the table, mpfr when perturbed; None means the package's
+    default."""
 
     a: Any
     b: Any
@@ -143,8 +143,8 @@ def halves(bernstein: list[Any]) -> tuple[list[Any], list[Any]]:
 def first_root(coefficients: list[Any], end: Any) -> Any:
     """Return the first root in (0, end] of a polynomial that is positive at 0, or None.
 
-    The sign changes of its Bernstein coefficients in an interval bound the number of its roots
-    there, with the same parity: 0 means none and 1 means one.
+    In an interval it has at most as many roots as its Bernstein coefficients have sign changes, and
+    the parities agree: 0 changes mean no root, and 1 means exactly one.
     """
     scaled = [one * end**i for i, one in enumerate(coefficients)]
     if scaled[0] <= 0:
@@ -189,7 +189,7 @@ def bisected(coefficients: list[Any], low: Any, high: Any) -> Any:
 
 
 class Touch(NamedTuple):
-    """Geometry of a touching body, and its response to impulses per mass along both axes."""
+    """Geometry of a touching body, and its response to impulses per unit mass along both axes."""
 
     h: Any
     o: Any
@@ -214,12 +214,12 @@ class Body:
         self.lever = mpfr(scene.rolling_resistance)
 
     def phi(self, theta: Any) -> Any:
-        """Return phi of an angle theta, with the same number of whole turns."""
+        """Return the phi that belongs to theta, with the same number of whole turns."""
         sin, cos = gmpy2.sin_cos(theta)
         return gmpy2.atan2(self.a * sin, self.b * cos) + theta - gmpy2.atan2(sin, cos)
 
     def theta(self, phi: Any) -> Any:
-        """Return theta of an angle phi, with the same number of whole turns."""
+        """Return the theta that belongs to phi, with the same number of whole turns."""
         sin, cos = gmpy2.sin_cos(phi)
         return gmpy2.atan2(self.b * sin, self.a * cos) + phi - gmpy2.atan2(sin, cos)
 
@@ -247,9 +247,11 @@ class State(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """A mode, the sign of its slip, and the order of the zero of slip or gap at its start; the sign
-    of the turning that the couple opposes, the order of its zero, and whether the couple holds the
-    body."""
+    """A mode, the sign of its slip, and the order of the zero of slip or gap at its start.
+
+    With rolling resistance: the sign of omega, the order of the zero of omega at the start, and
+    whether the couple holds the body.
+    """
 
     mode: str
     side: int = 0
@@ -263,7 +265,8 @@ REST = Arc(ROLLING, held=True)
 
 
 class Series(NamedTuple):
-    """Taylor coefficients in time; forces are per mass. `stiffness` is B on arcs that slide."""
+    """Taylor coefficients in time; forces are per unit mass. `stiffness` is B on arcs that
+    slide."""
 
     phi: list[Any]
     theta: list[Any]
@@ -290,7 +293,8 @@ def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
     bend: list[Any] = []  # series of h''
     c: list[Any] = []
     load: list[Any] = []  # series of g cos alpha + (h + h'') omega^2
-    stiffness: list[Any] = []  # series of D + q o (roll), B (slide) or h o (unlimited friction)
+    # series of k^2 + h^2 + o (o + q) (roll), B (slide) or h o (slide with unlimited friction)
+    stiffness: list[Any] = []
     normal: list[Any] = []
     friction: list[Any] = []
     spin_up: list[Any] = []  # series of the rate of omega
@@ -355,14 +359,13 @@ def slip_of(found: Series) -> list[Any]:
 
 
 def sign_of(number: Any) -> int:
-    """Return the sign of a number: -1, 0 or 1."""
     return int(number > 0) - int(number < 0)
 
 
 def turnings(body: Body, omega: Any) -> list[dict[str, Any]]:
-    """Return the ways in which the next arc may turn, as fields of `Arc`.
+    """Return the directions in which the body may rotate on the next arc, as fields of `Arc`.
 
-    Turning does not matter without a couple; from omega = 0 there are three possibilities.
+    They do not matter without a couple; from omega = 0 there are three possibilities.
     """
     if body.lever == 0:
         return [{}]
@@ -374,7 +377,8 @@ def turnings(body: Body, omega: Any) -> list[dict[str, Any]]:
 def is_possible(body: Body, state: State, arc: Arc) -> bool:
     """Return whether an arc that rolls or slides is possible.
 
-    Its forces must be available, and its slip and turning must grow in the assumed directions.
+    Its forces must be within their limits, and a slip or rotation that starts must grow in the
+    assumed direction.
     """
     found = motion(body, state, arc, 2)
     h, o = body.touch(state.phi)[:2]
@@ -402,7 +406,7 @@ def standing(body: Body, state: State, slip: Any) -> Arc | None:
         if unlimited and slip * o > 0:
             raise Undecided("unlimited friction would stop the slip at once")
         sides, zeros = ((1, -1), 1) if slip == 0 else ((sign_of(slip),), 0)
-        turns = [{}] if unlimited else turns  # no couple without pressure
+        turns = [{}] if unlimited else turns  # no couple without a normal force
         arcs += [Arc(SLIDING, side, zeros, **turn) for side in sides for turn in turns]
     possible = [arc for arc in arcs if is_possible(body, state, arc)]
     if len(possible) > 1:
@@ -418,7 +422,8 @@ def standing(body: Body, state: State, slip: Any) -> Arc | None:
 
 
 class Hit(NamedTuple):
-    """Impulses per mass along and away from the ground, and slip and gap rate after the hit."""
+    """Impulses per unit mass along and away from the ground, and slip and gap rate after the
+    hit."""
 
     along: Any
     away: Any
@@ -450,8 +455,8 @@ def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any, law: str) ->
     """Return the impulses of a collision with Coulomb friction.
 
     The collision is divided into pieces on which v and u are linear in the normal impulse p.
-    Restitution ends by its law: after e^2 of the work of compression (Stronge), e times the impulse
-    of compression (Poisson), or at u = -e times its first value (Newton).
+    Restitution ends after e^2 times the work of compression (Stronge), after e times the impulse of
+    compression (Poisson), or when u is -e times its initial value (Newton).
     """
     tangential, normal, coupling = touch[2:]
     along, away, work, compressing = mpfr(0), mpfr(0), mpfr(0), True
@@ -493,7 +498,7 @@ def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any, law: str) ->
 
 
 class Followed(NamedTuple):
-    """Events, the state at the end, the energy error, and the time of an undecided end."""
+    """Events, the last state, the energy error, and the time at which rebounds became too slow."""
 
     rows: list[Row]
     last: Row
@@ -537,13 +542,12 @@ class Follower:
         return standing(self.body, self.state, slip)
 
     def energy(self) -> Any:
-        """Return the energy of the body per mass."""
+        """Return the energy per unit mass."""
         s, body = self.state, self.body
         kinetic = (s.x_dot**2 + s.z_dot**2 + body.k2 * s.omega**2) / 2
         return kinetic + body.level * s.z - body.down * s.x
 
     def happens(self, kind: str) -> None:
-        """Record an event."""
         self.rows.append(self.now(kind))
 
     def now(self, kind: str) -> Row:
@@ -552,7 +556,7 @@ class Follower:
         return Row(kind, self.t, s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot)
 
     def follow(self, end: Any, most_events: int) -> Followed:
-        """Follow the motion to a time, or as long as it can be followed."""
+        """Follow the motion to a time or a number of events, or as long as it can be followed."""
         while self.arc is not None and self.t < end and len(self.rows) < most_events:
             if self.lost is not None:
                 break
@@ -560,7 +564,7 @@ class Follower:
         return Followed(self.rows, self.now("state"), self.energy_error / self.size, self.lost)
 
     def step(self, end: Any) -> None:
-        """Take one series up to the end of its step, the requested end or the first event."""
+        """Follow one series up to the end of its step, the requested end or the first event."""
         arc, body = self.arc, self.body
         assert arc is not None
         self.steps += 1
@@ -592,8 +596,8 @@ class Follower:
         return reach / growth if growth > 0 else mpfr("inf")
 
     def watched(self, found: Series, arc: Arc) -> list[tuple[str, list[Any]]]:
-        """Return the margins of the arc by the event that ends it, with zeros at the start divided
-        out."""
+        """Return the margins of the arc, each with the event at its zero; zeros at the start are
+        divided out."""
         mu, normal, friction = self.body.mu, found.normal, found.friction
         if arc.mode == FLIGHT:
             s = self.state
@@ -729,7 +733,7 @@ def follow(scene: Scene, end: Any, road: Road, most_events: int = 100) -> Follow
 
 
 def rows_of(scene: Scene, ends: Sequence[Any], road: Road) -> tuple[list[Row], Any]:
-    """Return events and the states at some times, in the order of time, and the energy error."""
+    """Return events and the states at some times, in order of time, and the energy error."""
     follower = Follower(scene, road)
     rows: list[Row] = []
     known, energy = 0, mpfr(0)
@@ -751,7 +755,7 @@ def support(a: float, b: float, theta: float) -> tuple[float, float, float]:
 
 
 def peak_of_friction(scene: Scene) -> float:
-    """Return the first maximum of |F|/N of a rolling body by Euler's method; 0 if there is none."""
+    """Return the first maximum of |F|/N in rolling, or 0 if there is none, with Euler's method."""
     a, b, g, theta, omega = scene.a, scene.b, scene.gravity, scene.theta, scene.omega
     k2 = (a * a + b * b) / 4 if scene.inertia is None else scene.inertia / scene.mass
     down, level = g * math.sin(scene.slope), g * math.cos(scene.slope)

@@ -1,10 +1,10 @@
-"""Follow a slide towards B = 0 (Painleve) until its slip vanishes, to 45 digits.
+"""Follow a slide towards Painleve's paradox (B = 0) until its slip vanishes, with 45 digits.
 
     python reference/impulse_clock.py
 
-The independent variable is the impulse of the normal force. Derivatives with respect to this
-impulse stay finite as B vanishes. contact_motion.py, which uses time instead, stops at B = 0. The
-integrator extrapolates midpoint rules (W. Gragg). The script prints the numbers in
+The independent variable is the impulse of the normal force, since derivatives with respect to it
+stay finite as B vanishes. contact_motion.py, which defines B and uses time, stops at B = 0. The
+integrator extrapolates the midpoint rule (W. Gragg). The script prints the numbers in
 tests/contact/test_slides.py.
 """
 
@@ -15,7 +15,7 @@ import rolling_ellipse as rl
 
 mp.mp.dps = 45
 TOLERANCE, AT_REST = mp.mpf(10) ** -36, mp.mpf(10) ** -38
-POINTS = (2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32)  # substeps of the midpoint rules
+POINTS = (2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32)  # substeps of the midpoint rule
 NAMES = ("theta", "omega", "x_dot", "t", "x")
 LIGHT: dict[str, Any] = {"inertia": 2e-4, "friction": 0.43, "theta": 1.618, "x_dot": 0.485}
 SCENES = (
@@ -26,8 +26,8 @@ SCENES = (
 
 
 def rates(scene: rl.Scene, side: int, y: list[Any]) -> tuple[list[Any], Any]:
-    """Return the derivatives of the state y (see NAMES) with respect to impulse per mass, and the
-    slip."""
+    """Return the derivatives of the state y (see NAMES) with respect to the impulse per unit mass,
+    and the slip."""
     theta, omega, x_dot, _, _ = y
     a, b, k2 = mp.mpf(scene.a), mp.mpf(scene.b), mp.mpf(scene.inertia) / mp.mpf(scene.mass)
     sine, cosine, c2 = mp.sin(theta), mp.cos(theta), (a - b) * (a + b)
@@ -63,7 +63,7 @@ def stepped(scene: rl.Scene, side: int, y: list[Any], step: Any) -> tuple[list[A
 
 
 def end_of_slide(scene: rl.Scene) -> list[Any]:
-    """Return the state in which the slip of a sliding start vanishes."""
+    """Return the state in which the slip vanishes."""
     y = [mp.mpf(getattr(scene, name, 0.0)) for name in NAMES]
     slip = rates(scene, 1, y)[1]
     side, step = (1 if slip > 0 else -1), mp.mpf("1e-3")

@@ -1,36 +1,38 @@
-"""Judge `simulate(model="contact")` with random scenes that contact_motion.py follows.
+"""Compare `simulate(model="contact")` with contact_motion.py on random scenes.
 
     python reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
 
 A run takes half an hour to an hour on two cores and continues an existing file. `--only 17` judges
-one scene of a seed and prints all its values, `--family well` draws from one family, and `--scenes
+scene 17 of a seed and prints all its values, `--family well` draws from one family, and `--scenes
 0` only prints the findings in a file. The report counts the judged scenes by family, shape,
 friction and rolling resistance, and prints each scene with an error above `--limit` units.
 
-`--resistance` adds a lever of rolling resistance to each scene: up to half of the shorter
-semi-axis, down to 1e-12 of that, or close to the least that holds the body. Such scenes last for
+`--resistance` adds a lever of rolling resistance to each scene, from 1e-12 to 1 times half of the
+shorter semi-axis, or close to the smallest lever that holds the body at rest. These scenes last for
 ten natural times.
 
 The scenes come from the families below: aspect ratios from 1e-3 to 1e3, friction from none to
 unlimited, inertia, mass, gravity and lengths over many powers of ten. Each scene is followed with
 42 digits until the inputs no longer determine the answer, there are enough events, or the kind of
-an event is undecided. Events, the states after them and states at times between are compared with
-the package's, which come from a table of times, from single times, and from `sol` in any order.
+an event is undecided. Events, the states after them and states at times in between are compared
+with the package's, which are computed at all times in one call, at single times, and by `sol` in
+random order.
 
 Units. The unit of a value is a sum: the effects of changing each input by 2.2e-16, each in a
 separate run; two ulp of the value; and, at events, the effect of two ulp of the time. On the ground
 the unit includes the effect of half an ulp of theta on h, h' omega and, without slip, h omega,
 because returned states compute these values from the rounded theta. theta0 changes by 2.2e-16 rad.
-The strict unit has no ulp of times, and changes theta0 by 2.2e-16 of its distance from the nearest
-quarter turn, which is finer than an ulp of the angle.
+The strict unit omits the effect of two ulp of the time, and changes theta0 by 2.2e-16 of its
+distance from the nearest quarter turn, which is finer than an ulp of the angle.
 
-Rolling without an end equals the model "rolling" bit for bit. Other tables test this model over any
-time.
+Rolling that does not end equals the model "rolling" bit for bit. Other tables test this model over
+times of any length.
 
-Scenes whose events change with 2.2e-16 of an input are at a limit and are not judged beyond it. If
-the package reports other events, the inputs are changed at random by up to 64 times 2.2e-16: within
-this distance the package treats a start as being at a limit. If changed inputs lead to the
-package's events, the scene is at a limit, too; if not, the package has a fault.
+If a change of an input by 2.2e-16 changes the events, the scene is at a limit and is not judged
+beyond it. If the package reports other events, the inputs are changed at random by up to 64 times
+2.2e-16, since the package treats a start that is this close to a limit as being at the limit. If
+changed inputs lead to the package's events, the scene is at a limit, too; if not, the package has a
+fault.
 """
 
 import argparse
@@ -74,14 +76,14 @@ ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72,
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
 CHECKED = 20  # the values of every 20th scene are checked in a third precision
 FARTHEST = 0.1  # largest accepted difference between two precisions, in units
-LEAST_UNIT = 1e-3 * ROUNDING  # smallest unit / size of a scene: some values are always zero
+LEAST_UNIT = 1e-3 * ROUNDING  # smallest unit / size of a scene, for values that are always zero
 RATE_STEP = 1e-8  # change of time / step, in the finite differences for rates
 UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not determine the answer
-KIND_LIMIT = 1e-4  # largest unit of a time / time at which the inputs determine the kind of event
+KIND_LIMIT = 1e-4  # largest unit of an event's time / natural time; above it the kind is not fixed
 MOST_STEPS = 260  # maximum number of steps of the motion that plans a scene
 MOST_SECONDS = 60.0  # processor time for one scene [s]
-ON_GROUND = 1e-12  # relative distance of z from h, and of x_dot from h omega
-SHORTEST = 1e-6  # shortest interval with samples / natural time: shorter hops are too low
+ON_GROUND = 1e-12  # z = h and x_dot = h omega within this relative difference
+SHORTEST = 1e-6  # shortest interval with samples / natural time; shorter hops are too low
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
 NEARBY = 12  # number of slightly changed scenes that distinguish a limit from a fault
 NEARBY_INPUTS = (
@@ -140,8 +142,7 @@ class Judge(Follower):
         )
 
     def first_arc(self, slip: Any) -> Arc | None:
-        """Return the first arc after the blow and the reaction of the ground without
-        restitution."""
+        """Return the first arc after the blow and the inelastic reaction of the ground."""
         body = self.body
         unlimited = not gmpy2.is_finite(body.mu)
         touch = body.touch(self.state.phi)
@@ -178,7 +179,7 @@ class Judge(Follower):
 
     def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
         """Change the arc, and record the rates of the state just before the event."""
-        now, row, short = self.state, self.now(what), mpfr(RATE_STEP) * step  # t is not moved
+        now, row, short = self.state, self.now(what), mpfr(RATE_STEP) * step
         self.state, self.arc = self.started, arc
         self.move(found, step - short)
         rates = [(p - q) / short for p, q in zip(row[1:], self.now(what)[1:], strict=True)]
@@ -187,7 +188,8 @@ class Judge(Follower):
         self.rates += [rates] * (len(self.rows) - len(self.rates))
 
     def reach(self, found: Series) -> Any:
-        """Return the step whose last terms are as small as the tolerance times the first three."""
+        """Return the step at which the last terms are the tolerance times the largest of the first
+        three."""
         columns = (found.phi, found.omega, found.h, found.x_dot)
         last, tau = self.road.order - 1, self.natural_time
         growth = mpfr(0)
@@ -212,7 +214,7 @@ class Answer(NamedTuple):
 
     events: list[Row]
     samples: list[Sample | None]
-    rates: list[list[Any]]  # rates of the rows of the events
+    rates: list[list[Any]]  # rates of the components of a row, just before each event
     stopped: Any  # time at which the motion became undecided, or None
     why: str
 
@@ -252,7 +254,7 @@ def distance_from_quarter_turn(theta: float) -> Any:
 
 
 def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
-    """Yield cases with one input changed by 2.2e-16, and the weight of each."""
+    """Yield the name of an input, its weight, and the case with this input changed by 2.2e-16."""
     scene = case.scene
     with ROADS[-1].context():
         k2 = Body(scene).k2
@@ -279,21 +281,19 @@ def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
 
 
 def with_input(case: Case, name: str, value: Any) -> Case:
-    """Return the case with one input of its scene changed."""
     return case._replace(scene=case.scene._replace(**{name: value}))
 
 
 class Judged(NamedTuple):
     """A row of the reference with its units."""
 
-    what: str  # name of the row: "event 3", "sample 0", "long 1"
+    what: str  # name of the row, such as "event 3" or "sample 0"
     row: Row
     unit: list[float]
     strict: list[float]
 
 
 def differences(new: Row, old: Row) -> list[float]:
-    """Return the magnitudes of the differences between two rows."""
     return [float(abs(p - q)) for p, q in zip(new[1:], old[1:], strict=True)]
 
 
@@ -303,7 +303,7 @@ class Reference(NamedTuple):
     judged: list[Judged]
     kinds: list[str]  # kinds of the events that the inputs determine
     times: list[Any]  # times of all events
-    at_limit: str  # the input whose change changes the events, or ""
+    at_limit: str  # an input whose rounding changes the events, and the event, or ""
     apart: float  # distance from a finer precision, in units
 
 
@@ -316,14 +316,13 @@ def natural(scene: Scene) -> tuple[float, float]:
 def sizes(scene: Scene) -> list[float]:
     """Return the natural sizes of the components of a row.
 
-    They show which answers the inputs do not determine.
+    The inputs do not determine a value whose unit is large compared with its size.
     """
     length, tau = natural(scene)
     return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
 
 
 def rows_of(found: Answer) -> dict[str, Row]:
-    """Return all rows of an answer, by name."""
     rows = {f"event {i}": row for i, row in enumerate(found.events)}
     return rows | {f"sample {i}": one.row for i, one in enumerate(found.samples) if one}
 
@@ -353,7 +352,8 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
 
 
 def by_rounded_angle(scene: Scene, row: Row) -> dict[str, float]:
-    """Return the effect of half an ulp of theta on the values that it determines on the ground."""
+    """Return the effect of half an ulp of theta on the values that theta determines on the
+    ground."""
     theta, omega, z, x_dot = map(float, (row.theta, row.omega, row.z, row.x_dot))
     h, slope, bend = support(float(scene.a), float(scene.b), theta)
     if abs(z - h) > ON_GROUND * h:
@@ -432,7 +432,7 @@ def in_words(case: Case) -> rl.Scene:
 
 
 class Found(NamedTuple):
-    """The package's answers by the name of the row and the way of computing them."""
+    """The package's answers, by the name of the row and the route."""
 
     kinds: list[str]
     values: dict[tuple[str, str], list[float]]  # (name of the row, route): t, theta, ...
@@ -440,7 +440,6 @@ class Found(NamedTuple):
 
 
 def states(motion: rl.Trajectory, count: int) -> list[list[float]]:
-    """Return the samples of a motion as rows."""
     return [[float(getattr(motion, name)[i]) for name in VALUES] for i in range(count)]
 
 
@@ -477,7 +476,8 @@ def found_by_package(case: Case, times: list[float], end: float, rng: random.Ran
 
 
 def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
-    """Return sample times between events, an end time, and the reason for it."""
+    """Return sample times between events, an end time, and why the motion becomes undecided, if it
+    does."""
     first = answer(case, CHANGED_ROAD, [], case.longest, MOST_STEPS)
     ends = [float(one.t) for one in first.events]
     if first.events and first.events[-1].kind == "jam":
@@ -519,7 +519,6 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
 
 
 def too_slow(*_: Any) -> None:
-    """Raise a TimeoutError when the alarm sounds."""
     raise TimeoutError
 
 
@@ -527,9 +526,9 @@ Task = tuple[int, int, str | None, bool]
 
 
 def judge(task: Task, tell: bool = False) -> dict[str, Any]:
-    """Return the record of the scene that has a number for a seed.
+    """Return the record of one scene.
 
-    The scene is drawn from one family or from any, with or without rolling resistance.
+    The seed and the number determine the scene. It is drawn from the given family, or from any.
     """
     seed, number, family, resistance = task
     rng = random.Random(f"{seed}-{number}")
@@ -559,8 +558,8 @@ def judge(task: Task, tell: bool = False) -> dict[str, Any]:
 
 
 def first_wrong(known: Reference, found: Found, end: float) -> int | None:
-    """Return the number of the first event of the package that is missing, invented or of another
-    kind."""
+    """Return the number of the first event that the package misses or invents, or whose kind is
+    wrong."""
     for i, kind in enumerate(known.kinds):
         if [kind] != found.kinds[i : i + 1]:
             return i
@@ -640,12 +639,11 @@ def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
 
 
 def power(rng: random.Random, low: float, high: float) -> float:
-    """Return a number whose logarithm is uniform between two powers of ten."""
+    """Return 10 to a power that is uniformly distributed between `low` and `high`."""
     return math.exp(math.log(10) * rng.uniform(low, high))
 
 
 def sign(rng: random.Random) -> int:
-    """Return 1 or -1 with equal probability."""
     return rng.choice([-1, 1])
 
 
@@ -710,30 +708,28 @@ Values = dict[str, Any]
 
 
 def with_axes(v: Values, a: float, b: float) -> None:
-    """Change the semi-axes in the inputs, but not the ratio of the inertia to that of a disc."""
+    """Change the semi-axes, and scale the inertia with the square of the longer one."""
     if v["inertia"] is not None:
         v["inertia"] *= (max(a, b) / max(v["a"], v["b"])) ** 2
     v["a"], v["b"] = a, b
 
 
 def rate(v: Values) -> float:
-    """Return the natural angular velocity of falling over [rad/s]."""
+    """Return the natural angular velocity sqrt(g / length) [rad/s]."""
     return math.sqrt(v["gravity"] / max(v["a"], v["b"]))
 
 
 def speed(v: Values) -> float:
-    """Return the speed after falling by the body's length [m/s]."""
+    """Return the natural speed sqrt(g length) [m/s]."""
     return math.sqrt(v["gravity"] * max(v["a"], v["b"]))
 
 
 def pose(rng: random.Random, v: Values) -> None:
-    """Draw any angle and spin."""
     v["theta"] = rng.uniform(-math.pi, math.pi)
     v["omega"] = rate(v) * rng.uniform(-2.5, 2.5)
 
 
 def slide(rng: random.Random, v: Values) -> None:
-    """Draw a start that slides."""
     pose(rng, v)
     v["omega"] = rng.choice([v["omega"], v["omega"], 0.0])
     v["x_dot"] = speed(v) * rng.choice([rng.uniform(-2, 2), sign(rng) * power(rng, -8, 0)])
@@ -747,7 +743,7 @@ def frictionless(rng: random.Random, v: Values) -> None:
 
 
 def roll(rng: random.Random, v: Values) -> None:
-    """Draw a start that rolls and will slip."""
+    """Draw a start that rolls and may slip."""
     pose(rng, v)
     v["friction"] = rng.choice([v["friction"], rng.uniform(0.02, 1), math.inf])
 
@@ -761,7 +757,6 @@ def short_slip(rng: random.Random, v: Values) -> None:
 
 
 def toss(rng: random.Random, v: Values) -> None:
-    """Draw a start in flight."""
     pose(rng, v)
     a, b = v["a"], v["b"]
     above = rng.choice([rng.uniform(0.02, 1.0) * min(a, b), max(a, b) * power(rng, -12, 0)])
@@ -770,19 +765,18 @@ def toss(rng: random.Random, v: Values) -> None:
 
 
 def drop(rng: random.Random, v: Values) -> None:
-    """Draw a drop from rest, low or high."""
     toss(rng, v)
     v["omega"] = v["x_dot"] = v["z_dot"] = 0.0
 
 
 def blow(rng: random.Random, v: Values) -> None:
-    """Draw a start that rolls, lies, slides or flies; the blow is drawn with the case."""
+    """Draw a start that rolls, lies, slides or flies; `drawn` adds the blow."""
     rng.choice([roll, roll, slide, lying, toss])(rng, v)
 
 
 def tip(rng: random.Random, v: Values) -> None:
-    """Draw a start on the tip, or within a few doubles of it, with hardly any spin."""
-    if v["a"] == v["b"] or rng.random() < 0.6:  # a body that continues rolling over its flat side
+    """Draw a start on the tip, or one ulp away from it, often with hardly any spin."""
+    if v["a"] == v["b"] or rng.random() < 0.6:  # a body that rolls on over its flat side
         with_axes(v, v["b"] * rng.uniform(1.05, 3.0) ** sign(rng), v["b"])
     v["theta"] = rng.choice([-1, 1]) * math.pi / 2 if v["a"] > v["b"] else 0.0
     if rng.random() < 0.2:
@@ -811,7 +805,7 @@ def lying(rng: random.Random, v: Values) -> None:
 
 
 def well(rng: random.Random, v: Values) -> None:
-    """Draw small rocking in the equilibrium of a non-round body on a slope."""
+    """Draw a start of small rocking about the equilibrium of a non-round body on a slope."""
     a, b = drawn_axes(rng)
     while max(a, b) / min(a, b) < 1.01:
         a, b = drawn_axes(rng)
@@ -846,7 +840,7 @@ def light(rng: random.Random, v: Values) -> float:
 
 
 def weightless(rng: random.Random, v: Values) -> None:
-    """Draw a start on the ground that hardly presses on it, or hardly leaves it."""
+    """Draw a start on the ground, close to the spin at which the body is weightless."""
     spin = light(rng, v) * sign(rng)
     v["omega"] = spin * (1 + sign(rng) * power(rng, -13, -0.5))
     if rng.random() < 0.3:
@@ -869,7 +863,7 @@ def skips(rng: random.Random, v: Values) -> None:
 
 
 def limits(rng: random.Random, v: Values) -> None:
-    """Draw a start within a few roundings of a limit between two kinds of motion."""
+    """Draw a start within 40 roundings of a limit between two kinds of motion."""
     off = 1 + rng.choice([0, 1, -1, 3, -3, 40, -40]) * 1.1e-16
     what = rng.choice(["weightless", "friction", "grip", "tip", "level"])
     if what == "weightless":
@@ -900,7 +894,7 @@ def needed_friction(v: Values) -> float:
 
 
 class Family(NamedTuple):
-    """The start of a family, its share of the scenes, its limit of events, and its time spans."""
+    """How a family draws a start, its share of the scenes, and its limits on events and time."""
 
     draw: Callable[[random.Random, Values], None]
     share: float
@@ -927,11 +921,11 @@ FAMILIES = {
 
 
 def drawn_blow(rng: random.Random, v: Values) -> Blow:
-    """Return a blow at a point of the body, directed inwards."""
+    """Return a blow at a point of the body, downwards or in any direction."""
     mass, fall = v["mass"], speed(v)
     size = mass * fall * power(rng, -3, 0.5)
     angle = rng.uniform(-math.pi, math.pi)
-    if rng.random() < 0.4:  # the body is pressed to the ground
+    if rng.random() < 0.4:
         reach = math.hypot(v["a"] * math.cos(v["theta"]), v["b"] * math.sin(v["theta"]))
         return Blow(0.0, -size, rng.uniform(-0.9, 0.9) * reach, 0.0)
     shorter = min(v["a"], v["b"])
@@ -981,21 +975,19 @@ def aspect(record: dict[str, Any]) -> str:
 
 
 def mu(record: dict[str, Any]) -> str:
-    """Return a word that describes the friction."""
     value = record["inputs"]["friction"]
     words = ((0, "0"), (1e-3, "tiny"), (3, "common"), (1e7, "large"))
     return next((word for most, word in words if value <= most), "unlimited")
 
 
 def lever(record: dict[str, Any]) -> str:
-    """Return the power of ten of the lever of rolling resistance / the shorter semi-axis."""
+    """Return the order of magnitude of the lever of rolling resistance / the shorter semi-axis."""
     v = record["inputs"]
     size = v.get("rolling_resistance", 0.0) / min(v["a"], v["b"])
     return f"1e{max(math.floor(math.log10(size)), -12):+03}" if size else "none"
 
 
 def report(records: list[dict[str, Any]], limit: float) -> None:
-    """Print the findings of a run."""
     verdicts = Counter(one["verdict"] for one in records)
     print(len(records), "scenes:", dict(verdicts), f"{sum(o['seconds'] for o in records):.0f} s")
     for word in ("refused", "undecided", "failed"):

@@ -1,17 +1,17 @@
-"""Judge `fit_motion` with right and wrong films of known scenes.
+"""Test `fit_motion` with right and wrong films of known scenes.
 
     python reference/judge_films.py judged.jsonl --study right --films 300
 
 A film takes one to six seconds. A run continues an existing file, and each study has its own seeds.
 `--films 0` only prints the results in the file. The studies:
 
-right    films of all kinds with normal noise: how many are reported as wrong, and, if sigma is
-         estimated, how far parameters are from those of the scene, in standard errors
-camera   films of all kinds from a camera of unknown scale, ground and clock: as for right films
-resistance  films of bodies that come to rest by rolling resistance, every second one from such a
-         camera, with given sigma: chi2, parameters as for right films, and the time of a fit
-wrong    films that do not fit their scene, of the kinds below in turn: how many are reported as
-         wrong, and for how many the message names the reading that makes them fit
+right    films of all kinds of motion with normal noise: how many are reported as wrong, and, if
+         sigma is estimated, the errors of the parameters, in standard errors
+camera   the same with a camera of unknown scale, ground and clock
+resistance  films of bodies that rolling resistance brings to rest, every second one from such a
+         camera, with given sigma: chi2, the errors of the parameters, and the time of a fit
+wrong    films that were changed and do not fit their scene: how many are reported as wrong, and for
+         how many the message names the reading of the data that makes them fit
 example  the film of docs/film.md: cost of the minimum above the minimum reached from the true scene
 wild     the same film with 4 of 80 angles off by a quarter turn, fitted with "soft_l1" and
          "cauchy" in turn
@@ -48,7 +48,8 @@ def noisy(scene: rl.Scene, t: Any, sigma: dict[str, float], random: Any) -> Trac
 
 
 def drawn(kind: str, random: Any) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], Any]:
-    """Return a scene of a kind, its unknowns, the tracker's noise, and the camera's times."""
+    """Return a random scene of a kind, its free parameters, the noise of the tracks, and the times
+    of the frames."""
     a = float(np.exp(random.uniform(np.log(0.02), np.log(1.0))))
     b, speed = a * random.uniform(0.5, 0.95), math.sqrt(9.81 * a)
     body: dict[str, Any] = {"a": a, "b": b, "theta": random.uniform(-1, 1)}
@@ -89,7 +90,7 @@ def guessed(scene: rl.Scene, free: tuple[str, ...]) -> rl.Scene:
 
 
 def largest(fit: rl.Fit) -> float:
-    """Return the largest T of the tracks of a fit without outliers, as defined in `fit_motion`."""
+    """Return the largest T of a fit's tracks, as `judged` in films/judgement.py defines it."""
     found = [0.0]
     for r in fit.residuals.T:
         pairs = np.isfinite(r[:-1]) & np.isfinite(r[1:])
@@ -101,13 +102,14 @@ def largest(fit: rl.Fit) -> float:
 
 
 def with_gaps(film: Tracks, random: Any) -> None:
-    """Remove a tenth of the numbers."""
+    """Replace about a tenth of the numbers in each track by NaN."""
     for name in TRACKS:
         film[name][random.random(len(film[name])) < 0.1] = np.nan
 
 
 def results(fit: rl.Fit, true: dict[str, float], **more: Any) -> dict[str, Any]:
-    """Return the results of a fit of right films; `off` is the error in standard errors."""
+    """Return the results of a fit to a right film; `off` has the errors of the parameters in
+    standard errors."""
     off = {name: (fit.values[name] - value) / fit.errors[name] for name, value in true.items()}
     return more | {
         "frames": len(fit.residuals), "T": largest(fit), "off": off, "chi2": fit.chi2,
@@ -145,7 +147,7 @@ def camera(seed: int) -> dict[str, Any]:
     if seed // 5 % 2:
         with_gaps(film, random)
     film["t"] = film["t"] - clock
-    free = tuple(name for name in free if name != "z")  # the clock determines it
+    free = tuple(name for name in free if name != "z")  # not independent of the clock
     guess = guessed(scene, free)
     true = {name: value_of(scene, name) for name in free}
     true |= {"scale": scale, "ground": ground, "clock": clock}
@@ -156,11 +158,11 @@ def camera(seed: int) -> dict[str, Any]:
 
 
 def resisted(seed: int) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], Any]:
-    """Like `drawn`, for a body that comes to rest and whose lever is at least five standard errors.
+    """Like `drawn`, for a body that comes to rest and whose lever exceeds five standard errors.
 
-    The spin of a rolling body is not fitted if the clock of the camera is unknown, because the body
-    would otherwise pass through an equivalent start in every swing. The film ends at 0.7 to 1.1
-    times the time of rest, which is below 60 sqrt(a/g).
+    The spin of a rolling body is not fitted if the clock of the camera is unknown, because each
+    swing would then contain an equivalent start. The film ends at 0.7 to 1.1 times the time of
+    rest, which is below 60 sqrt(a/g).
     """
     random, small = np.random.default_rng([8, seed]), seed // 6 % 2
     while True:
@@ -242,7 +244,7 @@ def _drag(film: Tracks, random: Any) -> Tracks:
             for n in TRACKS}  # fmt: skip
 
 
-# by kind: the change of a film, and the reading with which it fits, or ""
+# for each kind: the change of a film, and the reading of the data that undoes it, or ""
 WRONG: dict[str, tuple[Callable[[Tracks, Any], Tracks], str]] = {
     "counter-clockwise": (lambda f, _: {"theta": -f["theta"]}, "theta = -theta"),
     "degrees": (lambda f, _: {"theta": np.degrees(f["theta"])}, "theta = np.radians(theta)"),

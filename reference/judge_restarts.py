@@ -1,22 +1,22 @@
-"""Start new motions from the states of random motions, and judge them.
+"""Start new motions from states of random motions, and compare them with the random motions.
 
     python reference/judge_restarts.py --study ends --scenes 20000 --seed 1 --file restarts.jsonl
 
 A run takes a few minutes and continues an existing file. Without `--file` the results are not
 stored. `--scenes 0` only prints the results in the file. The studies:
 
-ends    new motions of length t2 start from states at t1: do they end like one motion of length
-        t1 + t2 (an exact sum)?
-events  new motions start from states at events (from the event, `at` and `scene_at`): do they have
-        the later events?
-cut     motions stopped by `max_events` continue from their end, and from one rounding before the
-        next event: do the new motions have this event and the later ones?
+ends    new motions of length t2 start from states at t1: do they end in the same state as one
+        motion of length t1 + t2 (an exact sum)?
+events  new motions start from states at events, as returned in the event, by `at` and by
+        `scene_at`: do they have the later events?
+cut     motions stopped by `max_events` continue from their end, and from one ulp before the next
+        event: do the new motions have this event and the later ones?
 
 The random scenes have aspect ratios up to 800, any size, slope and friction, and angles up to 1e9.
 The verdict on a new start is one of these:
 
 same            the same events and, in `ends`, a state within 8 units
-over 8 units    the same events, but a state farther away
+over 8 units    the same events, but a state that differs by more
 silent          in `cut`, the next change of mode happens without an event, as documented
 one more ...    one more impact after a start between bounces that are summed, as documented
 jams ...        a start at the limit of Painleve's paradox: rounding errors decide whether it jams,
@@ -24,13 +24,13 @@ jams ...        a start at the limit of Painleve's paradox: rounding errors deci
 beside a tie    other events, but a relative change of 1e-12 in an input also changes the events of
                 the first motion
 wrong           other events for no known reason
-refused         no scene accepts the state
+refused         `Scene` rejects the state
 
 The unit of a number is the sum of the effects of one rounding of each input of the motion and of
 the new start, computed from differences, plus two ulp of the number. On the ground the unit
 includes the effect of one ulp of theta on h, h' omega and, without slip, h omega, because both
 states compute these values from a theta rounded by half an ulp. A state that does not depend
-linearly on the inputs is beside a tie.
+linearly on the inputs counts as beside a tie.
 """
 
 import argparse
@@ -49,7 +49,7 @@ from rolling_ellipse._ask.settings import DEFAULTS
 from runs import add_record, read_records
 
 Values = dict[str, Any]
-Finding = tuple[str, str, float, str]  # label, verdict, distance, and the case to paste
+Finding = tuple[str, str, float, str]  # label, verdict, distance, and code to reproduce the case
 INPUTS = ("a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution")
 STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
 ULP = 2.0**-52
@@ -76,7 +76,6 @@ def either(rng: Any, n: int, *arrays: Any) -> Any:
 
 
 def body(rng: Any, n: int) -> Values:
-    """Draw bodies and grounds."""
     size, sign = either(rng, n, 1.0, powers(rng, n, -6, 6)), rng.choice([-1, 1], n)
     beside_round = 1 + sign * powers(rng, n, -15, -1)
     common, any_aspect = powers(rng, n, -0.7, 0.7), powers(rng, n, -2.9, 2.9)
@@ -96,12 +95,12 @@ def body(rng: Any, n: int) -> Values:
 
 
 def clocks(v: Values) -> Any:
-    """Return the natural times of falling over [s]."""
+    """Return the natural times sqrt(length / g) [s]."""
     return np.sqrt(np.maximum(v["a"], v["b"]) / v["gravity"])
 
 
 def draw(rng: Any, n: int) -> Values:
-    """Draw scenes that roll, slide, fly or leave the ground; nan for omitted arguments."""
+    """Draw scenes that roll, slide, fly or leave the ground; omitted arguments are NaN."""
     v, sign = body(rng, n), rng.choice([-1, 1], n)
     quarter = np.round(rng.uniform(-4, 4, n)) * math.pi / 2
     far, near = sign * powers(rng, n, 0, 9), quarter + sign * powers(rng, n, -12, -1)
@@ -152,9 +151,10 @@ def ends(v: Values, t: Any) -> tuple[Any, Any]:
 
 
 def spread(v: Values, t: Any, change: float) -> tuple[Any, Any]:
-    """Return the effect on the ends of a rounding of each input, and where events change.
+    """Return the sum of the effects of one rounding of each input on the end states, and where the
+    events change.
 
-    The inputs are changed by the relative amount `change`.
+    They are computed from relative changes of the inputs by `change`.
     """
     states, codes = ends(v, t)
     total, tie = np.zeros_like(states), np.zeros(len(t), bool)
@@ -180,7 +180,7 @@ def units(v: Values, t: Any) -> tuple[Any, Any]:
 
 
 def by_rounded_angle(v: Values, state: Any, mode: Any) -> Any:
-    """Return the effect of an ulp of theta on the values that it determines on the ground."""
+    """Return the effect of an ulp of theta on the values that theta determines on the ground."""
     theta, omega = state[:2]
     slope = rl.geometry.support_slope(theta, a=v["a"], b=v["b"])
     bend = rl.geometry.support_curvature(theta, a=v["a"], b=v["b"])
@@ -244,9 +244,10 @@ def follow(scene: rl.Scene, t: float, most: int = MOST) -> rl.Trajectory:
 def same(
     m: rl.Trajectory, got: rl.Trajectory, k: int = 0, skip: int = 0, start: float = 0.0
 ) -> bool:
-    """Return whether a motion from `start` on has the events of another motion from event k on.
+    """Return whether the motion `got`, started at `start`, has the events of `m` from event k on.
 
-    The first eight kinds and the first three times are compared.
+    The first eight kinds and the first three times are compared, without the first `skip` events of
+    `got`.
     """
     complete = len(m.events) < MOST
     if complete and m.status is not got.status:
@@ -274,7 +275,7 @@ def summed(m: rl.Trajectory, k: int) -> bool:
 
 
 def beside_a_tie(m: rl.Trajectory, k: int) -> bool:
-    """Return whether an input changed by 1e-12 changes the events."""
+    """Return whether a relative change of an input by 1e-12 changes the events."""
     for name in INPUTS + STATE:
         value = getattr(m.scene, name)
         if value is None or not math.isfinite(value):
@@ -291,7 +292,7 @@ def beside_a_tie(m: rl.Trajectory, k: int) -> bool:
 
 
 def jams_by_roundings(new: rl.Scene, got: rl.Trajectory) -> bool:
-    """Return whether a start jams, but not if its angle is changed by eight roundings."""
+    """Return whether a start jams, but does not jam if its angle changes by eight ulp."""
     if got.status is not rl.Status.JAMMED or got.t_end > 0:
         return False
     off = 8 * np.spacing(abs(new.theta))
@@ -309,7 +310,7 @@ def judged(
         new = start()
     except ValueError as error:
         return label, "refused", off, f"{case}: {error}"
-    past = 1 + 1e-6 * (m.status is rl.Status.JAMMED)  # a jam ends a motion at its time
+    past = 1 + 1e-6 * (m.status is rl.Status.JAMMED)  # the new motion must also reach the jam
     got = follow(new, max(m.t_end * past - t, 0.0))
     silent = due and m.events[k].kind is not rl.EventKind.IMPACT
     impact = bool(got.events) and got.events[0].kind is rl.EventKind.IMPACT
@@ -367,7 +368,7 @@ STUDIES = {"ends": study_ends, "events": study_events, "cut": study_cut}
 
 
 def report(records: list[Values]) -> None:
-    """Count the verdicts, and print each wrong case."""
+    """Print the counts of the verdicts, and each wrong case."""
     for study in STUDIES:
         tally, worst = defaultdict[str, Counter[str]](Counter), defaultdict[str, float](float)
         some = [row for row in records if row["study"] == study]
@@ -382,7 +383,6 @@ def report(records: list[Values]) -> None:
 
 
 def judge(study: str, seed: int, block: int) -> Values:
-    """Judge a block of scenes."""
     tally, worst, cases = Counter[tuple[str, str]](), defaultdict[Any, float](float), []
     for label, verdict, off, case in STUDIES[study](np.random.default_rng([seed, block]), BLOCK):
         tally[label, verdict] += 1

@@ -1,7 +1,7 @@
 """Compute `python/rolling_ellipse/benchmark/problems/*.json`: problems with known answers.
 
 contact_motion.py computes the motions with series of order 50 and 60 and with 64 and 76 digits.
-States, forces and events must agree to `AGREEMENT`, relative where they are above 1: the largest
+States, forces and events must agree to `AGREEMENT`, relative to magnitudes above 1; the largest
 difference was 3.5e-49. The energy minus all work changed by at most 1.5e-52 of its magnitude.
 
     python make_benchmark.py            computes all files (4 minutes, one core)
@@ -15,11 +15,12 @@ that follow from theta, omega and the contact are computed from these.
 
 Condition. The condition of a value y is the sum of |dy/dln p| over the inputs p, divided by the
 scale of y, and at least 1. A state has the largest condition of its six values (see `scales`), and
-an event has the condition of its time, with the scale sqrt(L/g). theta changes in radians, and
-other values of the start that are zero change in units of L, sqrt(g L) or sqrt(g/L). A slope,
-friction, restitution or rolling resistance of zero does not change, nor does the mass; the inertia
-is that of a uniform disc and follows from a and b. The differences are central, of 1e-12 with 42
-digits. They are one-sided if the input is at the end of its range or if one side has other events.
+an event has the condition of its time, with the scale sqrt(L/g). For theta, dln p is a change in
+radians; for other initial values that are zero, it is a change in units of L, sqrt(g L) or
+sqrt(g/L). A slope, friction, restitution or rolling resistance of zero is left out, and so is the
+mass; the inertia is that of a uniform disc and follows from a and b. The derivatives are central
+differences of 1e-12 with 42 digits, or one-sided ones if the input is at the end of its range or if
+one side has other events.
 
 The infinitely many bounces of a disc that no longer slips form a geometric series, whose sum is
 known in closed form. The events are those of a simulation with the default rest_speed: impacts as
@@ -47,7 +48,7 @@ FOLDER = Path(__file__).parents[1] / "python" / "rolling_ellipse" / "benchmark" 
 STATE = ["x", "z", "theta", "x_dot", "z_dot", "omega"]
 STEPS = {60: 2.0, 20: 0.5, 12: 0.4, 8: 0.2, 6: 0.2, 5: 0.2, 4: 0.1, 3: 0.1, 2.5: 0.1}  # else 0.05
 LARGEST_CONDITION = 1000.0
-LEAST_GAP = 0.002  # over L; a lower flight is not scored as a flight
+LEAST_GAP = 0.002  # height / L; a lower flight is not scored as a flight
 LAWS = ("stronge", "poisson", "newton")
 GRADIENT_ROADS = ((TABLE_ROAD, "1e-15"), (CHECK_ROAD, "1e-18"))  # and the changes of the input
 
@@ -157,11 +158,10 @@ class Sampler(Follower):
 
     @property
     def kinds(self) -> list[str]:
-        """Kinds of the events."""
         return [row.kind.upper() for row in self.rows]
 
     def row(self, normal: Any = 0, friction: Any = 0) -> list[Any]:
-        """Return the current state, followed by the forces computed from forces per mass."""
+        """Return the current state, followed by the forces computed from forces per unit mass."""
         s, mass = self.state, self.body.mass
         forces = mass * normal, mass * friction
         return [s.x, s.z, s.theta, s.x_dot, s.z_dot, s.omega, *forces]
@@ -210,7 +210,7 @@ class Sampler(Follower):
         touch = body.touch(s.phi)
         rebound = s.z_dot - touch.o * s.omega
         slow = rebound < REST_SPEED * gmpy2.sqrt(body.g * min(body.a, body.b))
-        nearly_round = abs(body.c2) < 1e-9 * body.ab  # derivatives also need slightly changed discs
+        nearly_round = abs(body.c2) < 1e-9 * body.ab  # derivatives need slightly deformed discs
         if self.arc == Arc(FLIGHT, zeros=1) and slow and nearly_round:
             assert s.x_dot == touch.h * s.omega
             lasts = 2 * rebound / body.level / (1 - body.e)
@@ -253,7 +253,8 @@ def neighbours(
 ) -> tuple[Any, ...]:
     """Return two values of an input, each with its motion.
 
-    The values are the input decreased and increased, or the input unchanged and changed.
+    The input is decreased and increased. If one of these values is out of range or leads to other
+    events, the unchanged input replaces it.
     """
     scene, end, old = problem.scene, problem.t_end, mpfr(getattr(problem.scene, name))
     found = []
@@ -325,8 +326,9 @@ def tags(scene: Scene, found: Sampler) -> list[str]:
 def answer(name: str, found: Sampler) -> dict[str, Any]:
     """Return the answer that a simulator must give, depending on the question of the problem.
 
-    For settling bounces: those after a flight higher than `LEAST_GAP`, and the time of their end.
-    For a body that comes to rest: its position at rest, and the number of half swings.
+    For bounces that settle: the events up to the first flight below `LEAST_GAP`, and the time of
+    the last event. For a body that comes to rest: its position at rest, and the number of half
+    swings.
     """
     family, last = name.split(".")[0], found.samples[-1]
     if found.kinds[-1:] == ["REST"]:

@@ -5,9 +5,9 @@ The tests compare the contact model with this table. contact_motion.py computes 
     python make_contact_reference.py            computes and checks the table (15 minutes, one core)
 
 Every value was computed twice, with series of order 50 and 60 and with 64 and 76 digits. The two
-values must agree to `AGREEMENT`, relative if the value is above 1: the largest difference was
+values must agree to `AGREEMENT`, relative to magnitudes above 1; the largest difference was
 6.0e-47. The energy minus the work of friction and of the impacts must be constant to `AGREEMENT` of
-its magnitude: the largest sum of changes was 2.6e-51.
+its magnitude; the largest sum of changes was 2.6e-51.
 
 Units. The unit of an answer y is the effect of a relative change of 2.2e-16 of each input (theta0:
 absolute). Answers are the time of an event and the state just after the event; the effect on the
@@ -124,7 +124,6 @@ def random_axes(rng: random.Random, shape: str) -> tuple[float, float]:
 
 
 def random_scene(rng: random.Random, family: Family) -> Scene:
-    """Return a random scene of a family."""
     a, b = random_axes(rng, family.shape)
     mass = 1.0 if rng.random() < 0.3 else log_uniform(rng, 0.1, 30.0)
     gravity = rng.choice([9.81, 9.81, 1.62, 3.7])

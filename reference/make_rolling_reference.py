@@ -12,7 +12,7 @@ the ground, k^2 = I/m independent of a and b:
     h = sqrt(a^2 sin^2 theta + b^2 cos^2 theta),  h' = dh/dtheta,  rho = a^2 b^2 / h^3
     E = D omega^2 / 2 + g h  conserved,  x = integral of h dtheta, 0 at the start               (2)
 
-Method 1 (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta in 80 digits,
+Method 1 (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta with 80 digits,
 inverted after whole half turns or half swings are subtracted. For libration the variable is u with
 sin phi = kappa sin u, where phi is measured from the flat position, so that turning points are
 ordinary points. The quadrature is Gauss-Legendre on panels that grow geometrically away from the
@@ -22,8 +22,8 @@ panels, node counts and working precision. The two states must agree to `AGREEME
 relative difference was 2.3e-58.
 
 Method 2 (a check by `make_slope_reference.py --level`): Taylor series of another form of the
-equation, which do not use the energy. They follow up to four scenes of each kind that takes no more
-than a few hundred steps. theta, omega and x of 75 scenes of 20 of the 22 kinds agreed within
+equation, which do not use the energy. Of each kind, up to four scenes were followed that take no
+more than a few hundred steps. theta, omega and x of 75 scenes of 20 of the 22 kinds agreed within
 1.9e-38; fast spins and 1e9 half turns take too many steps.
 
 Units. The unit of an answer y is the effect of one rounding of every input, plus two ulp of y:
@@ -191,7 +191,8 @@ class RollingEllipse:
         return half * mp.fdot(self.rule.weights, times), half * mp.fdot(self.rule.weights, lengths)
 
     def _unfold(self, half_turns: int, sign: int, x: Any) -> Any:
-        """Return X(v) at v = half_turns pi + sign r, from X(r) on the quarter [0, pi/2]."""
+        """Return the integral of dx/dv from 0 to half_turns pi + sign r, from the integral `x` to
+        r in [0, pi/2]."""
         if self.rocks:
             return -sign * x if half_turns % 2 else sign * x
         return 2 * half_turns * self.quarter_x + sign * x
@@ -207,8 +208,8 @@ class RollingEllipse:
         return 2 * half_turns * self.quarter_time + sign * time, self._unfold(half_turns, sign, x)
 
     def _solve_quarter(self, time: Any) -> tuple[Any, Any]:
-        """Return the v in [0, pi/2] at `time`, and X(v), by Newton's method confined to one
-        panel."""
+        """Return the v in [0, pi/2] at `time`, and the integral of dx/dv up to v, with Newton's
+        method in one panel."""
         i = min(bisect_right([s[0] for s in self.sums], time), len(self.sums) - 1) - 1
         low, high = self.edges[i], self.edges[i + 1]
         width = high - low
@@ -259,7 +260,6 @@ class RollingCircle:
         return mpf("0.5")
 
     def state(self, t: Any) -> State:
-        """Return the state at time t."""
         angle = self.scene.omega0 * t
         return State(self.scene.theta0 + angle, self.scene.omega0, self.scene.a * angle)
 
@@ -341,7 +341,8 @@ def random_body(rng: random.Random, kind: str) -> Body:
     elif kind.startswith("circle"):
         ratio = 1.0
     b = a * ratio
-    swap = kind != "flat_start" and rng.random() < 1 / 3  # else flat is pi/2, not a double
+    # the flat position must be at 0 for a flat start, since pi/2 is not a double
+    swap = kind != "flat_start" and rng.random() < 1 / 3
     a, b = (b, a) if swap else (a, b)
     size = a * a + b * b
     gyration2 = size / 4 if rng.random() < 0.65 else size * log_uniform(rng, 1e-3, 10.0)
@@ -376,7 +377,8 @@ def random_start(rng: random.Random, body: Body, kind: str) -> tuple[float, floa
 
 
 def energy_level(rng: random.Random, kind: str, height: float, high: float) -> Any:
-    """Return E / g: above or below its value at rest on the tip, by kind or at random."""
+    """Return E / g, which is above or below its value at rest on the tip, depending on the kind or
+    at random."""
     if kind.startswith("separatrix"):
         _, side, distance = kind.split("_")
         return high * (1 + mpf(distance) * (1 if side == "above" else -1))

@@ -3,9 +3,10 @@
     python make_sensitivity_reference.py        computes the table (10 minutes, one core)
 
 A row contains the derivatives of x, z, theta, x_dot, z_dot, omega with respect to one input. They
-are forward differences of motions with 42 digits, for a change of 1e-15, relative to the input if
-its magnitude is above 1e-6. An input has no row if it is infinite or omitted, if the changed motion
-has other events, or if its effect is known (x, and the mass if it changes nothing).
+are forward differences of motions with 42 digits. The change of the input is 1e-15, times the
+magnitude of the input if this is above 1e-6. An input has no row if it is infinite or omitted, if
+the changed motion has other events, or if its effect is known (x, and the mass if it changes
+nothing).
 """
 
 import csv
@@ -26,7 +27,6 @@ CHANGE = 1e-15
 
 
 def derivatives(name: str, scene: Scene, end: float) -> Iterator[list[str]]:
-    """Yield the rows of a scene."""
     base = follow(scene, end, UNIT_ROAD)
     for wrt in FIELDS:
         value = getattr(scene, wrt)

@@ -23,13 +23,13 @@ with p = sin phi cos phi, c^2 = a^2 - b^2, which follows from Lagrange's equatio
 dtheta/dphi. The forces follow from Newton's law, N = m (z'' + g cos alpha), F = m (x'' - g sin
 alpha), with the Taylor coefficients of (1) in time.
 
-Method. Taylor series in time of phi and of the arc by the recurrences for products, quotients and
-roots (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients determine the
-size of each step. Every value was computed twice, with series of order 50 and 60 and with 60 and 72
-digits. The two values must agree to `AGREEMENT`: the largest relative difference was 5.2e-45. The
-energy, with the kinetic energy of the moving centre instead of (2), must be constant to
-`AGREEMENT`: the largest change was 2.9e-46. On level ground 75 scenes of `rolling_reference.csv`,
-which comes from the energy integral, are reproduced within 1.9e-38.
+Method. The Taylor series of phi and of the arc in time follow from recurrences for products,
+quotients and roots (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients
+determine the size of each step. Every value was computed twice, with series of order 50 and 60 and
+with 60 and 72 digits. The two values must agree to `AGREEMENT`: the largest relative difference was
+5.2e-45. The energy, with the kinetic energy of the moving centre instead of (2), must be constant
+to `AGREEMENT`: the largest change was 2.9e-46. On level ground 75 scenes of
+`rolling_reference.csv`, which comes from the energy integral, are reproduced within 1.9e-38.
 
 Units. The unit of an answer y is the effect of a relative change of 2.2e-16 of each input (theta0:
 absolute):
@@ -348,12 +348,10 @@ def random_start(
 
 
 def natural_time(scene: Scene) -> float:
-    """Return the natural time of a scene [s]."""
     return math.sqrt(max(scene.a, scene.b) / scene.gravity)
 
 
 def random_scene(rng: random.Random, kind: str) -> Scene:
-    """Return a random scene of a kind."""
     a, b = random_axes(rng, kind)
     mass = log_uniform(rng, 0.05, 200.0)
     inertia = random_inertia(rng, kind, mass * (a * a + b * b) / 4)

@@ -90,7 +90,8 @@ class Swing(Rolling):
         self.width = max(abs(each.series.phi[0] - self.start) for each in self.stages)
 
     def go_on(self) -> Stage:
-        """Take one more step of half the reach of its series; it has at most one turning point."""
+        """Take one more step, half as long as its series allows, so that it contains at most one
+        turning point."""
         series = self.series(self.road.order)
         self.stages.append(Stage(self.time, self._reach(series) / 2, series))
         self.time += self.stages[-1].lasts
@@ -113,7 +114,6 @@ class NoSwing(Exception):
 
 
 def answers(scene: Scene, t: float, road: Road) -> Answer:
-    """Return the answers of a scene at a time."""
     with road.context():
         return Swing(scene, road).at(t)
 
@@ -148,7 +148,8 @@ class Well(NamedTuple):
 def well(scene: Scene) -> Well:
     """Return the potential well of a scene.
 
-    By (3), gravity exerts no moment if sin 2 phi = 2 a b tan alpha / c^2.
+    By (3) of make_slope_reference.py, gravity exerts no moment if sin 2 phi = 2 a b tan alpha /
+    c^2.
     """
     a, b, mass, inertia, g, slope = map(mpfr, scene[:6])
     longer, shorter, side = max(a, b), min(a, b), 1 if slope > 0 else -1

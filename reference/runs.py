@@ -17,8 +17,7 @@ def log_uniform(rng: random.Random, low: float, high: float) -> float:
 
 
 def difference(one: Sequence[Any], other: Sequence[Any]) -> float:
-    """Return the largest relative difference of two answers; absolute where the other answer is
-    0."""
+    """Return the largest difference of two answers, relative to the second where it is not 0."""
     return max(float(abs(p - q) / (abs(q) or 1)) for p, q in zip(one, other, strict=True))
 
 

@@ -41,7 +41,7 @@ def square_root(squared: Any, known: list[Any]) -> Any:
 
 
 def value(coefficients: list[Any], step: Any) -> Any:
-    """Return the sum of a Taylor series at a step."""
+    """Return the value of a Taylor series at the distance `step` from its centre."""
     total = mpfr(0)
     for coefficient in reversed(coefficients):
         total = total * step + coefficient

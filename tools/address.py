@@ -1,10 +1,10 @@
-"""Write the project's public address into every place that needs one: python tools/address.py URL
+"""Write the project's public address into every file that needs it: python tools/address.py URL
 
-The address is that of the repository, such as https://host/owner/rolling-ellipse; its branch is
-`main`. Until it is known, the README has relative links, which PyPI cannot follow. A second run
-with another address replaces the first one. --site is the address of the built site, by default
-that of the repository. --maintainers are the accounts that maintain the recipe, by default the
-owner of the repository.
+URL is the address of the repository, such as https://host/owner/rolling-ellipse; its branch is
+`main`. Until the address is known, the README has relative links, which PyPI cannot follow. A
+second run with another address replaces the first one. --site is the address of the built site, by
+default that of the repository. --maintainers are the accounts that maintain the recipe, by default
+the owner of the repository.
 """
 
 import argparse

@@ -1,7 +1,7 @@
 """Call all public functions with odd and extreme arguments.
 
 A case is a few lines: a call, then expressions that use its result. Hypothesis draws the cases,
-which are the same for the same seed, and shortens a case that fails. The cases run in a separate
+which depend only on the seed, and shortens a case that fails. The cases run in a separate
 process, so that a crash or an endless call is a finding like any other. `fuzz/calls.py`,
 `fuzz/scenes.py` and `fuzz/values.py` draw; `fuzz/judge.py` and `fuzz/promises.py` define what must
 not happen. A finding is printed as lines to paste.
@@ -92,7 +92,7 @@ class Hunt:
         except (
             Exception,
             KeyboardInterrupt,
-        ):  # or a case that does not fail again
+        ):  # Hypothesis has its own exception for a case that does not fail again
             if target is None:
                 raise
         if target is not None:

@@ -1,7 +1,8 @@
 """Write src/numerics/gauss_legendre.hpp: Gauss-Legendre nodes and weights, rounded from 40 digits.
 
 Weights computed in double precision (numpy.polynomial.legendre.leggauss) have errors of about
-1e-15, more than all other errors of the quadrature; hence this table is computed in 40 digits.
+1e-15, more than all other errors of the quadrature. This table is therefore computed with 40
+digits.
 
 Run:  python tools/make_gauss_legendre.py > src/numerics/gauss_legendre.hpp    (needs mpmath)
 """

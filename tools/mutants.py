@@ -4,13 +4,13 @@
     python tools/mutants.py python --count 30 --folder /tmp/mutants
     python tools/mutants.py core --only src/contact/slide.cpp:52:3 --folder /tmp/mutants
 
-copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
-tolerances, and/or, min/max) from lines all over the sources, and for each builds the copy and runs
-the nearest tests, the programs of tests/core, and some tests of every folder, up to the first that
-fails. With --thorough the whole suite is run last. Mutants that no test notices are listed; mutants
-that do not compile do not count. At the end the tests must pass without a mutant. Results are kept
-in FOLDER/SIDE.json; the same command continues where it was stopped. The script needs the build and
-test requirements.
+copies the checkout to FOLDER and draws changes (signs, sines and cosines, factors, < and <=,
+indices, tolerances, and/or, min/max) from lines all over the sources. For each change it builds the
+copy and runs the nearest tests, the programs of tests/core, and the quick tests of every folder, up
+to the first that fails. With --thorough the whole suite is run last. Mutants that no test notices
+are listed; mutants that do not compile do not count. At the end the tests must pass without a
+mutant. Results are stored in FOLDER/SIDE.json; the same command continues where it was stopped. The
+script needs the build and test requirements.
 """
 
 import argparse
@@ -47,8 +47,8 @@ CHANGES = {
     "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
 }  # fmt: skip
 
-# Test folders for the innermost listed folder of a source file; "core" and "python" are for files
-# in no such folder. The tests of other source folders are in a folder of the same name.
+# Test folders by the innermost listed folder of a source file; "core" and "python" are for files in
+# none of these folders. Other source folders have their tests in a folder of the same name.
 NEAREST = {
     "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],

@@ -2,7 +2,7 @@
 
     python3.11 tools/oldest_versions.py FOLDER [argument of pytest ...]
 
-makes a virtual environment in FOLDER, which must not exist, builds the package there with the
+creates a virtual environment in FOLDER, which must not exist, builds the package there with the
 oldest build requirements and runs pytest. With --list it only prints the versions.
 """
 
@@ -27,7 +27,7 @@ NO_DEPRECATIONS = ("-Wignore::DeprecationWarning", "-Wignore::PendingDeprecation
 
 
 def oldest(requirement: str) -> str:
-    """The requirement of exactly the oldest version that a requirement allows: name==version."""
+    """The oldest version that a requirement allows, as the requirement name==version."""
     found = re.fullmatch(r"([\w-]+)(?:>=|==)([\w.]+)(?:,.*)?", requirement)
     if found is None:
         sys.exit(f"every requirement must state its oldest version, got {requirement!r}")

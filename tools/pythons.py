@@ -2,14 +2,14 @@
 
     python tools/pythons.py FOLDER [--quick] [PYTHON ...]
 
-makes FOLDER, which must not exist. PYTHON is a version (3.14, or 3.14t without the GIL) or the path
-of an interpreter; by default it is every version in the classifiers of pyproject.toml, and those
-that are available without the GIL. A version is looked up on the PATH. If it is not there and the
-script runs as root, it comes from Debian: mmdebstrap creates a system in FOLDER (nothing of the
-host is mounted in it) with g++ and this Python, which is built from Debian's source if it has no
-GIL (ten minutes). Packages that have a wheel are installed in a new environment. For each Python a
-line is printed with versions, requirements without a wheel, counts of pytest, and reasons for
-skipped tests. FOLDER/VERSION.log has the output.
+creates FOLDER, which must not exist. PYTHON is a version (3.14, or 3.14t without the GIL) or the
+path of an interpreter. The default is every version in the classifiers of pyproject.toml, with and
+without the GIL where both exist. A version is looked up on the PATH. If it is not found and the
+script runs as root, mmdebstrap creates a Debian system in FOLDER with g++ and this Python. Nothing
+of the host is mounted in this system. A Python without the GIL is built from Debian's source (ten
+minutes). Requirements that have a wheel are installed in a new environment. For each Python a line
+is printed with versions, requirements without a wheel, pytest's counts, and reasons for skipped
+tests. FOLDER/VERSION.log has the output.
 """
 
 import argparse
@@ -89,7 +89,7 @@ def start(python: str, folder: Path) -> tuple[list[str], str]:
 
 
 def outcome(python: str, log: Path, arguments: list[str]) -> str:
-    """The report on an interpreter, one line; raise SystemExit with it if the suite fails."""
+    """One line about an interpreter; raise SystemExit with this line if the suite fails."""
     folder = log.parent
     before, interpreter = start(python, folder)
     environment = Path("/environment") if before else log.with_suffix("")

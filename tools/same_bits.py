@@ -1,5 +1,4 @@
-"""Build tests/core/golden.cpp with many compilers and flags, and compare the bits that the programs
-print.
+"""Compare the bits that tests/core/golden.cpp prints, built with many compilers and flags.
 
     python tools/same_bits.py FOLDER                 all builds whose compiler is on this machine
     python tools/same_bits.py FOLDER --only clang    all builds with this word in their name
@@ -7,10 +6,10 @@ print.
 
 The builds stay in FOLDER; with ccache a second run is quick. Builds for one target must agree to
 the last bit. Two other targets have C libraries that round sin and cos differently: aarch64, which
-also has no lanes (g++-aarch64-linux-gnu and qemu-user), and Windows (g++-mingw-w64-x86-64-posix
-and wine64). Builds for each of them must agree too, and may differ from builds for x86-64 Linux by
-no more than the bound of tests/oracles/golden.py. Otherwise the exit code is 1. The packages
-libc++-dev and libc++abi-dev provide libc++.
+also has no vector lanes (g++-aarch64-linux-gnu and qemu-user), and Windows
+(g++-mingw-w64-x86-64-posix and wine64). Builds for each of them must agree, too, and may differ
+from builds for x86-64 Linux by no more than the bound of tests/oracles/golden.py. Otherwise the
+exit code is 1. The packages libc++-dev and libc++abi-dev provide libc++.
 """
 
 import argparse
@@ -56,7 +55,6 @@ class Build:
         return self.compiler if self.compiler in SETTINGS else ""
 
     def command(self, folder: Path) -> list[str]:
-        """The command that runs the built program."""
         if self.target == ARM:
             qemu = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")
             return [qemu or "qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", str(folder / "golden")]

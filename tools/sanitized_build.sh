@@ -3,8 +3,8 @@
 # Python command with it:
 #
 #   tools/sanitized_build.sh                                   (builds only)
-#   tools/sanitized_build.sh --suite                           (the whole suite of tests, and
-#                                                              after it arguments of pytest)
+#   tools/sanitized_build.sh --suite                           (the whole suite; arguments of
+#                                                              pytest may follow)
 #   tools/sanitized_build.sh tools/fuzz_api.py --calls 5000 --seconds-per-call 20 --no-memory-limit
 #   tools/sanitized_build.sh -m pytest tests/contact/test_contact.py
 #   tools/sanitized_build.sh --threads --suite                 (tests that run several threads)

@@ -18,8 +18,8 @@ from .problem import Integration, Peer, Problem, columns, finite
 SOURCE = Path(__file__).with_name("odeint.cpp")
 FLAGS = ("-std=c++17", "-O3", "-march=native", "-shared", "-fPIC")
 STEPPERS = ("dopri5", "rkf78", "ck54", "bulirsch_stoer")
-# Steppers that interpolate samples. The others stop at every sample, since interpolation makes
-# Bulirsch-Stoer inaccurate.
+# Steppers that interpolate samples. The others stop at every sample: Bulirsch-Stoer would lose
+# accuracy by interpolation, and rkf78 and ck54 have no dense output.
 DENSE = {"dopri5"}
 FAILURES = {1: "more than 1e6 steps", 2: "the step becomes too small", 3: "unknown stepper"}
 Doubles = ctypes.POINTER(ctypes.c_double)

@@ -13,7 +13,8 @@ MANY = 20_000  # from this number of samples on, compiled dense output is faster
 
 
 def equations(slope: bool) -> list[Any]:
-    """The equations in a form with few products of series; without slope terms on level ground."""
+    """The equations in a form with few products of power series, on level ground without the terms
+    of the slope."""
     theta, omega, x = heyoka.make_vars("theta", "omega", "x")
     b2, spread, a2b2, total, gamma, sigma = (heyoka.par[i] for i in range(6))
     s, c = heyoka.sin(theta), heyoka.cos(theta)

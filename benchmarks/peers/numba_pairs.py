@@ -31,7 +31,8 @@ class NumbaRun(Integration):
         return finite(*self.integrate(self.span)[1].tolist())
 
     def sample(self, times: Any) -> Any:
-        """Sample the motion. numbalsoda starts at its first time, which LSODA accepts only once."""
+        """Sample the motion. numbalsoda starts at the first of the times, which LSODA does not
+        accept twice."""
         later = int(np.searchsorted(times, 0.0, "right"))
         states = self.integrate(np.concatenate(([0.0], times[later:])))
         return columns(np.concatenate((np.tile(self.start, (later, 1)), states[1:])))

@@ -1,4 +1,4 @@
-"""The equation for libraries that call a compiled function that writes into its argument."""
+"""The equation for libraries whose compiled right-hand side writes its result into an argument."""
 
 from typing import Any
 

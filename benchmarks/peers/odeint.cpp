@@ -48,8 +48,8 @@ struct Samples {
     void put(long i, const State& y) const { std::copy(y.begin(), y.end(), states + 3 * i); }
 };
 
-// Runs a controlled stepper that stops at every sample. After a step that a sample has cut short,
-// the next step has the size from before it, or a larger one.
+// Runs a controlled stepper that stops at every sample. After a step that a sample cuts short, the
+// next step size is the larger of the one before the cut and the one that the stepper proposes.
 template <class Stepper>
 Answer stop_at(Stepper stepper, const Rates& rates, double step, const Samples& samples) {
     State y{rates.body.theta, rates.body.omega, rates.body.x};

@@ -5,9 +5,10 @@ With A = a^2, B = b^2, u = h^2 = B + (A - B) sin^2 and S = k^2 + A + B, the iner
 
     (S u - AB) theta'' = h u sigma - (A - B) sin cos (gamma h + AB omega^2 / u),  x' = h omega,
 
-where sigma and gamma are gravity along the ground and into it. This is the notebook's equation with
-fewer products, which makes the peers faster: heyoka takes half the time. S u - AB magnifies a
-rounding by A/(k^2 + B) near the flat position: at most 4 times for a uniform disc, however thin.
+where sigma and gamma are the components of gravity along the ground and into it. This is the
+notebook's equation with fewer products, which makes the peers faster: heyoka takes half the time.
+Near the flat position, S u - AB magnifies rounding errors by A/(k^2 + B), which is less than 4 for
+a uniform body.
 """
 
 import math
@@ -79,7 +80,7 @@ class Integration(ABC):
 
     @abstractmethod
     def __call__(self) -> tuple[float, float, float]:
-        """theta, omega and x at the end, integrated again in each call."""
+        """Integrate anew, and return theta, omega and x at the end."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """REBOUND's own interface for ODEs, solved by its Gragg-Bulirsch-Stoer integrator.
 
-The right-hand side is a C function compiled by numba, which finds the body through `ref` of the
-ODE.
+The right-hand side is a C function compiled by numba, which reads the body from the field `ref` of
+the ODE.
 """
 
 import ctypes

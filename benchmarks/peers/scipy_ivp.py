@@ -18,7 +18,7 @@ METHODS = ("DOP853", "RK45", "LSODA", "Radau")
 
 
 def equation(rates: Rates, compiled: bool) -> Any:
-    """y' = f(t, y, body) of y = (theta, omega, x)."""
+    """The function f in y' = f(t, y, body), for y = (theta, omega, x)."""
     if not compiled:
         return lambda t, y, body: np.array((y[1], *rates(y[0], y[1], body)))
     import numba
@@ -67,7 +67,6 @@ def peer(method: str, compiled: bool, rates: Rates = RATES) -> Peer:
 
 
 def numba_works() -> bool:
-    """Whether numba is installed and can be imported."""
     try:
         import_module("numba")
     except Exception:

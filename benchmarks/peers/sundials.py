@@ -1,8 +1,8 @@
 """SUNDIALS through scikit-sundae, which calls functions compiled by numba.
 
-CVODE integrates the equation. IDA integrates the body with its constraints z = h and x' = h omega:
-the unknowns are x, z, theta, their rates, and the forces N and F per mass; the constraints are
-differentiated until the forces appear (index 1). The stabilised form of index 2 (Gear, Gupta,
+CVODE integrates the equation. IDA integrates the body with its constraints z = h and x' = h omega.
+Its unknowns are x, z, theta, their rates, and the forces N and F per unit mass. The constraints are
+differentiated until the forces appear (index 1), since the stabilised index-2 form (Gear, Gupta,
 Leimkuhler) costs as much and is less accurate. Huge absolute tolerances exclude the forces from the
 error test.
 """
@@ -71,7 +71,8 @@ class CvodeRun(Integration):
         return finite(*(y[i] for i in self.order))
 
     def sample(self, times: Any) -> Any:
-        """Sample the motion; solve() needs three or more rising times, the first at the start."""
+        """Sample the motion. solve() needs at least three increasing times; the first is the
+        initial time."""
         stops, back = np.unique(np.concatenate(([0.0], times, [self.t_end])), return_inverse=True)
         found = self.solver.solve(stops, *self.initial)
         self.settle(found)
@@ -95,7 +96,8 @@ class IdaRun(CvodeRun):
 
 
 def consistent(given: Problem) -> tuple[Any, Any]:
-    """All unknowns at the start and their rates; IDA ignores the rates of the forces (0)."""
+    """All unknowns and their rates at the start; the rates of the forces are 0, as IDA ignores
+    them."""
     body, (theta, omega, x) = given.body, given.start
     h, slope, bend = _support(theta, body)
     turn, _ = RATES(theta, omega, body)

@@ -31,7 +31,7 @@ def no_slip(q: Sequence[Any], q_dot: Sequence[Any]) -> Any:
 
 
 def along(function: Positions, q: Sequence[Any], q_dot: Sequence[Any], a: Any, b: Any) -> list[Any]:
-    """Rates of the entries of function(q, a, b) for the rates q_dot."""
+    """Time derivatives of the entries of function(q, a, b) if q changes at the rates q_dot."""
 
     def moved(t: Any) -> list[Any]:
         return [value + t * rate for value, rate in zip(q, q_dot, strict=True)]

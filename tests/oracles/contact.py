@@ -25,7 +25,7 @@ class Response(NamedTuple):
 
 
 def response(scene: Scene, state: InitialState) -> Response:
-    """Rates of the material at the contact of a touching body, and responses 1/m + arm^2/I."""
+    """Slip and gap rate of a touching body, and its responses, such as 1/m + arm^2/I."""
     at = support(state.theta, scene.a, scene.b)
     mass, inertia = scene.mass, scene.mass * scene.gyration2
     return Response(
@@ -98,7 +98,8 @@ def energy(scene: Scene, state: InitialState) -> float:
 
 
 def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size: float) -> Impulse:
-    """A blow of a given size at any point of the body, mostly downwards, half of them vertical."""
+    """A blow of a given size at a random point of the body, mostly downwards, and vertical half of
+    the time."""
     push = rng.choice([0.0, rng.normal()])
     share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
     along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body

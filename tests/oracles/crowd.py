@@ -71,7 +71,7 @@ def random_bodies(count: int, rng: np.random.Generator) -> tuple[Floats, ...]:
 
 def random_lifts(still: Motion, loss: Long, rng: np.random.Generator) -> Long:
     """E/m above rest in the flat position: swings of all sizes, rotations up to and beyond the loss
-    of contact, and clusters near the separatrix (to 1e-12) and the loss of contact (to 1e-9)."""
+    of contact, and many values close to the separatrix and to the loss of contact."""
     count = still.a.size
     barrier = still.gravity * np.abs(still.a - still.b)
     side = rng.choice([-1, 1], count)
@@ -88,8 +88,8 @@ def random_lifts(still: Motion, loss: Long, rng: np.random.Generator) -> Long:
 
 
 def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """theta and omega at a random place of each motion, up to 300 turns away. A tenth of the bodies
-    are at rest, half of these flat."""
+    """theta and omega at a random point of each motion, up to 300 turns away. A tenth of the bodies
+    are at rest, some of them flat."""
     count = moving.a.size
     on = oracles.rolling.chart(moving)
     sine, cosine = on.sides(on.top * rng.uniform(0, 1, count))

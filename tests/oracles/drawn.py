@@ -10,7 +10,7 @@ from oracles.numbers import EPS
 
 Draw = Any  # the argument that st.composite passes
 
-#: Hard angles: on and near the quarter turns, and thousands of turns away.
+#: Angles on and near quarter turns.
 QUARTERS = st.builds(
     lambda k, beside: k * math.pi / 2 + beside,
     st.integers(-9, 9),

@@ -1,11 +1,11 @@
-"""Units for the errors of `flow`: the effect of rounding every input once, plus two ulps."""
+"""Motions on which `flow` is tested, and the largest error allowed."""
 
 from typing import Any
 
 from rolling_ellipse import thresholds
 
-# A unit is the unavoidable error of a backward stable method, which rounds every input once. Four
-# units allow for a few more roundings.
+# A unit is the unavoidable error of a backward stable method: the effect of rounding every input
+# once, plus two ulps. Four units allow for a few more roundings.
 LARGEST_ERROR = 4.0
 
 PARAMETERS = ("a", "b", "gyration2", "gravity", "theta", "omega")
@@ -30,5 +30,4 @@ MOTIONS = {
 
 
 def arguments(motion: Motion) -> dict[str, Any]:
-    """Keyword arguments of `flow`."""
     return dict(zip(PARAMETERS, motion, strict=True))

@@ -56,7 +56,7 @@ def height(theta: Any, a: float, b: float) -> Any:
 
 
 def height_slopes(theta: float, a: float, b: float) -> tuple[Any, Any, Any]:
-    """h, h', h'' [m] by numerical differentiation of h, to 30 digits of the largest."""
+    """h, h', h'' [m] by numerical differentiation of h, to 30 digits relative to the largest."""
     with mp.workdps(2 * DIGITS):
         turned, long_axis, short_axis = mp.mpf(theta), mp.mpf(a), mp.mpf(b)
         derivatives = mp.diffs(lambda angle: height(angle, long_axis, short_axis), turned, 2)
@@ -67,8 +67,6 @@ def height_slopes(theta: float, a: float, b: float) -> tuple[Any, Any, Any]:
 
 
 class Support(NamedTuple):
-    """h, h' and h'' [m]."""
-
     h: Any
     slope: Any
     curvature: Any
@@ -112,7 +110,6 @@ class Outline(NamedTuple):
 
 
 def outline(a: Long, b: Long, sine: Long, cosine: Long) -> Outline:
-    """h, h', rho and h'' at a reduced angle."""
     longer, shorter = np.maximum(a, b), np.minimum(a, b)
     h, slope, curvature = _support(sine, cosine, longer, shorter, np.sqrt)
     return Outline(h, slope, (a * b) ** 2 / h**3, curvature)

@@ -131,7 +131,7 @@ def at(state: Any) -> tuple[float, ...]:
 
 
 def motion_through_python(motion: list[Record]) -> Iterator[Record]:
-    """The records of a motion that follow the records "motion" and "scene"."""
+    """The records of a motion after its records "motion" and "scene", computed through Python."""
     (_, model, method, stabilization), scene = motion[0].words, scene_of(motion[1].numbers)
     t_end, samples, step, stages = motion[0].numbers
     times = np.array([t_end * i / (samples - 1) for i in range(int(samples))])
@@ -163,7 +163,7 @@ def motion_through_python(motion: list[Record]) -> Iterator[Record]:
 
 
 def bodies_through_python(records: list[Record]) -> list[Record]:
-    """Records of many bodies, each followed by its state at its time."""
+    """Records of bodies, each followed by a record of the computed state of the body."""
     bodies = [each for each in records if each.kind == "body"]
     columns = np.array([each.numbers for each in bodies]).T
     t, a, b, theta, omega, gravity, gyration2 = columns

@@ -10,7 +10,7 @@ from oracles.geometry import support
 
 
 class Pushed(NamedTuple):
-    """theta'' [1/s^2], and N and F per mass [m/s^2]."""
+    """theta'' [1/s^2], and N and F per unit mass [m/s^2]."""
 
     turning: Any
     normal: Any
@@ -18,7 +18,7 @@ class Pushed(NamedTuple):
 
 
 def pushed(scene: rl.Scene, theta: Any, omega: Any) -> Pushed:
-    """The forces of a rolling body at an angle, by Newton's law."""
+    """The forces on a rolling body at an angle, from Newton's law."""
     h, slope, bend = support(theta, scene.a, scene.b)
     into, along = (scene.gravity * part(scene.slope) for part in (math.cos, math.sin))
     inertia = scene.gyration2 + h**2 + slope**2

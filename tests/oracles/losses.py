@@ -1,7 +1,8 @@
 """Stepped runs with all methods, from fine to far too coarse steps, and their losses.
 
-The losses are measured at eight samples per step, and by comparison with exact rolling, which
-reference tables verify, from the start of each step. Each loss is divided by its limit:
+The energy and the constraints are computed at eight samples per step. The end of each step is
+compared with exact rolling (verified by reference tables) from its start. Each loss is divided by
+its limit:
 
 * the energy: its largest change, relative to the largest sum of kinetic and |potential| energy, in
   which x is measured from the start; the limit is 1e-2 or, if larger, ten rtol;
@@ -101,7 +102,7 @@ def _solved(scene: Scene, theta: Floats, omega: Floats, steps: Floats) -> Floats
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
         for i, step in enumerate(steps.tolist()):
-            with suppress(ValueError):  # it leaves the ground at once, or is too fast
+            with suppress(ValueError):  # the body leaves the ground at once, or is too fast
                 start = scene.replace(theta=theta[i], omega=omega[i], x=0.0)
                 ends[i] = simulate(start, [step], model="rolling", method="exact").theta[0]
     return ends

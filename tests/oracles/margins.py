@@ -1,6 +1,6 @@
-"""Figures that a test prints beside its bounds."""
+"""Numbers that a test prints beside its bounds."""
 
 
 def told(*values: object) -> None:
-    """Print figures: pytest shows them for a test that fails, and for every test with -rP."""
+    """Print numbers, which pytest shows if the test fails and, with -rP, for every test."""
     print(*values)

@@ -1,4 +1,4 @@
-"""The model "multipliers" without the core: matrix, its derivatives, forces; scenes, settings."""
+"""Scenes for the model "multipliers", and its matrix and forces computed without the core."""
 
 import dataclasses
 import math

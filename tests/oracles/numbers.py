@@ -19,6 +19,5 @@ def ulps(actual: float, exact: Any, scale: Any) -> float:
 
 
 def known(value: float | None) -> float:
-    """The value, which must not be None."""
     assert value is not None
     return value

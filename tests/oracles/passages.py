@@ -29,14 +29,15 @@ SETTINGS: tuple[dict[str, Any], ...] = (
 
 def random_motion(rng: np.random.Generator) -> Trajectory:
     """A motion of a random model and method, on level ground or a slope. If the model allows only
-    rolling, the body starts with it."""
+    rolling, so does the start."""
     settings = SETTINGS[rng.integers(len(SETTINGS))]
     level = settings.get("method") == "exact" or rng.random() < 0.6
     given: dict[str, Any] = {"x": rng.normal(), "slope": 0.0 if level else rng.uniform(-0.3, 0.3)}
     if settings["model"] != "contact":
         given |= {"friction": math.inf, "inertia": None, "z": None, "x_dot": None, "z_dot": None}
     drawn = random_scenes(99, int(rng.integers(2**31)), **given)
-    scene = next(one for one in drawn if 0.2 < one.a / one.b < 5)  # steps are too long if thinner
+    # the fixed steps are too long for thinner bodies
+    scene = next(one for one in drawn if 0.2 < one.a / one.b < 5)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
         warnings.simplefilter("ignore", StabilityWarning)

@@ -45,14 +45,12 @@ def outline(body: Ellipse, count: int = 200) -> NDArray[np.float64]:
 
 
 def figure_of(ax: Axes) -> Figure:
-    """The figure of an axes, which must not be a subfigure."""
     figure = ax.figure
     assert isinstance(figure, Figure)
     return figure
 
 
 def legend_in(ax: Axes) -> Legend:
-    """The legend of an axes, which must exist."""
     legend = ax.get_legend()
     assert legend is not None
     return legend
@@ -100,7 +98,8 @@ def shows_something(figure: Figure) -> bool:
 
 
 def texts_of(figure: Figure) -> Iterator[Bbox]:
-    """Boxes of titles, legends, labels of axes and ticks, and texts in them, shrunk by a pixel."""
+    """Boxes of the titles, legends, labels of axes and ticks, and other texts, each shrunk by a
+    pixel."""
     for ax in figure.axes:
         parts: list[Any] = [ax.title, ax._left_title, *ax.texts]  # type: ignore[attr-defined]
         for axis in (ax.xaxis, ax.yaxis):

@@ -93,5 +93,5 @@ def quantities(value: Any) -> list[Any]:
 
 
 def plain(values: list[float]) -> list[Any]:
-    """Arrays without units that have attributes with the names of units."""
+    """Arrays without units that have attributes such as `unit` or `dimensions`."""
     return [np.array(values).view(Astropy), Labelled(np.array(values), units="m"), NetCDF(values)]

@@ -30,7 +30,8 @@ Q, Q_DOT = rl.kinematics(0.2, 2.0, **SHAPE)
 
 
 def as_given(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
-    """The corrected motion from a start off the constraints, without the warning of the start."""
+    """The motion by the corrected equations from a start off the constraints, without the warning
+    about this start."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", report.InconsistentStartWarning)
         motion = report.simulate(q, q_dot, t, consistent="as_given", **{**SHAPE, **options})

@@ -18,7 +18,7 @@ from oracles.numbers import EPS, Long
 def forces_by_differentiation(
     theta: Any, a: float, b: float, gyration2: float, gravity: float, energy: Any
 ) -> tuple[Any, Any]:
-    """N/m and F/m on level ground from h and the energy alone, every derivative numerical."""
+    """N/m and F/m on level ground from h and the energy alone, with numerical derivatives."""
 
     def speed2(angle: Any) -> Any:
         h, slope = height(angle, a, b), mp.diff(lambda y: height(y, a, b), angle)
@@ -46,7 +46,7 @@ class Motion(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """Forces per mass [m/s^2], and bounds of the errors of double arithmetic."""
+    """Forces per unit mass [m/s^2], and bounds of the errors of double arithmetic."""
 
     normal: Long
     friction: Long
@@ -93,7 +93,7 @@ def speed(moving: Motion, sine: Long, cosine: Long) -> Long:
 
 
 def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
-    """Newton's law at a reduced angle; friction has the sign for phi and h' >= 0.
+    """Forces by Newton's law at a reduced angle, for which phi and h' are not negative.
 
     The errors allow for 1e-12 of the sum of the terms, for the effect of 16 ulps of the energy
     (measured from the ground, as in E/m - g h) on omega^2 and the force, and for the effect of an
@@ -182,7 +182,8 @@ def golden_minimum(
 
 
 def local_minima(values: Long, keep: Long) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """(row, column) of the lowest samples of dips, if they are at most the `keep` of their row."""
+    """(row, column) of the samples that are lower than their neighbours and at most the `keep` of
+    their row."""
     padded = np.pad(values, ((0, 0), (1, 1)), constant_values=np.inf)
     least = (values < padded[:, :-2]) & (values <= padded[:, 2:]) & (values <= keep[:, None])
     rows, columns = np.nonzero(least)
@@ -190,8 +191,8 @@ def local_minima(values: Long, keep: Long) -> tuple[NDArray[np.intp], NDArray[np
 
 
 class Extremes(NamedTuple):
-    """Smallest N/m and largest |F|/N (inf if N <= 0 somewhere), with its position v, of whole
-    motions, and bounds of the errors of double arithmetic."""
+    """Smallest N/m and largest |F|/N (inf if N <= 0 somewhere) of whole motions, the position v of
+    the largest |F|/N, and bounds of the errors of double arithmetic."""
 
     normal: Long
     normal_error: Long
@@ -209,7 +210,7 @@ def _least_per_row(rows: NDArray[np.intp], values: Long, count: int) -> NDArray[
 
 def extremes(moving: Motion, samples: int = 300) -> Extremes:
     """Extremes by dense samples, refined by golden section. |F|/N is sampled again around the
-    smallest N, since the smaller N is, the narrower is its peak."""
+    smallest N, since its peak is narrow where N is small."""
     count = moving.a.size
     on = chart(moving)
     step = on.top / (samples - 1)

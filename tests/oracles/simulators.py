@@ -15,7 +15,6 @@ HEADER = ",".join(("t", *STATE))
 
 
 def states_of(motion: Trajectory) -> NDArray[np.float64]:
-    """States of a motion, a row for each sample."""
     return np.stack([getattr(motion, name) for name in STATE], axis=1)
 
 
@@ -27,7 +26,7 @@ def exact(one: benchmark.Problem, t: Any, setting: Any = None) -> benchmark.Resu
 
 
 def changed(**changes: Callable[[Any], float]) -> Callable[..., Any]:
-    """A simulator that solves another scene, whose changes are functions of the scene."""
+    """A simulator that solves a changed scene; each change is a function of the original scene."""
 
     def mine(one: benchmark.Problem, t: Any, setting: Any) -> Any:
         given: dict[str, Any] = {name: change(one.scene) for name, change in changes.items()}

@@ -9,7 +9,7 @@ ORDER = 30
 # bodies need their last digits.
 QUARTER = np.longdouble(float.fromhex("0x1.921fb54442d18p+0"))
 REST = np.longdouble(float.fromhex("0x1.1a62633145c07p-54"))
-Columns = Any  # an array of long doubles for each motion
+Columns = Any  # arrays of long doubles, with a column for each motion
 
 
 def product(p: Columns, q: Columns, k: int) -> Columns:

@@ -1,4 +1,4 @@
-"""Scenes whose motions are compared sample by sample, and one motion from every model."""
+"""Scenes whose motions are compared sample by sample, and motions of every model."""
 
 from collections.abc import Callable
 

@@ -40,7 +40,7 @@ def scene_in_other_units(scene: Scene, units: Powers) -> Scene:
 
 
 def assert_same_in_other_units(one: Trajectory, other: Trajectory, units: Powers) -> None:
-    """Samples and events of the second motion are those of the first in its units.
+    """Require that the second motion has the samples and events of the first in other units.
 
     Zeros may differ in sign, as z_dot = h' omega does at the start of a circle, where h' = 0.
     """

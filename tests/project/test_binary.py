@@ -15,7 +15,6 @@ UNWANTED = ("hypot", "hypotf", "cbrt", "lgamma", "tgamma", "_ZSt8to_charsPcS_d")
 
 
 def disassembled(*options: str) -> str:
-    """Output of objdump for the extension."""
     objdump = shutil.which("objdump")
     if objdump is None:
         pytest.skip("there is no objdump on this machine")
@@ -27,10 +26,10 @@ def disassembled(*options: str) -> str:
 
 
 def test_only_exact_products_in_vector_lanes_are_fused() -> None:
-    """two_product of src/numerics/lanes.hpp is x y - round(x y), packed, in AVX2 and AVX-512.
+    """two_product in src/numerics/lanes.hpp computes x y - round(x y) with packed instructions.
 
     A compiler that fuses products and sums on its own would also fuse additions and scalars.
-    std::fma is a function call.
+    std::fma is compiled to a function call.
     """
     if platform.machine() != "x86_64":
         pytest.skip(f"the instructions are those of x86-64, not of {platform.machine()}")
@@ -40,10 +39,10 @@ def test_only_exact_products_in_vector_lanes_are_fused() -> None:
     fused = re.findall(r"\bvfn?m(?:add|sub)\w+", disassembled("-d", "--no-show-raw-insn"))
     told(len(fused), sorted(set(fused)))
     assert all(re.fullmatch(r"vfmsub(?:132|213|231)pd", each) for each in fused), set(fused)
-    assert fused or "sse2" not in _core.flow_levels()  # a failed search finds none
+    assert fused or "sse2" not in _core.flow_levels()  # a broken search would find none
 
 
 def test_the_extension_calls_no_function_that_differs_between_systems() -> None:
     symbols = re.findall(r"\*UND\*.*?(\w+)$", disassembled("-T"), re.MULTILINE)
-    assert {"sin", "atan2", "PyErr_SetString"} <= set(symbols)  # a failed search finds none
+    assert {"sin", "atan2", "PyErr_SetString"} <= set(symbols)  # a broken search would find none
     assert not set(symbols) & set(UNWANTED)

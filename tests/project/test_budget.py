@@ -21,7 +21,6 @@ DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef)
 
 
 def code_lines(text: str, suffix: str) -> int:
-    """Number of lines of a source that are code."""
     if not suffix.startswith(".py"):
         return sum(bool(line.strip()) for line in COMMENT.sub("", text).splitlines())
     lines = text.splitlines()

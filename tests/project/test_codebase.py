@@ -1,4 +1,4 @@
-"""The sources: linters, formatters, type checker, generated files, one version, order of imports.
+"""Checks of the sources: linters, formatters, types, generated files, version, order of imports.
 
 All paths are relative to this file: the suite runs from a source checkout with an installed
 package.
@@ -236,7 +236,7 @@ def folder_of(name: str) -> int:
     return FOLDERS.index(name.rpartition("/")[0])
 
 
-def test_each_folder_includes_only_those_before_it() -> None:
+def test_no_folder_includes_a_later_folder() -> None:
     between = 0
     for path in SOURCES:
         name = path.relative_to(ROOT / "src").as_posix()
@@ -277,7 +277,7 @@ def room_of(file: str) -> int:
     return ROOMS.index("" if first == "__init__" else first)
 
 
-def test_each_room_imports_only_those_before_it() -> None:
+def test_no_room_imports_a_later_room() -> None:
     between = 0
     for path in PACKAGE.rglob("*.py"):
         name = path.relative_to(PACKAGE).as_posix()
@@ -347,7 +347,7 @@ def test_the_compiler_fuses_only_what_is_written_as_fused(
     assert len(fused(written)) == 1
 
 
-def test_the_compiler_fuses_nothing_in_vectorized_sources(fused: Callable[..., list[str]]) -> None:
+def test_vectorization_fuses_no_further_operations(fused: Callable[..., list[str]]) -> None:
     """A compiler that vectorizes could fuse operations on packed numbers. Operations that are fused
     without vectorization as well are fused in the source."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")

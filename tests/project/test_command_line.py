@@ -36,15 +36,13 @@ KEYS = {
 
 
 class Answer(NamedTuple):
-    """Exit code and output of a command."""
-
     code: int
     out: str
     err: str
 
 
 def typed(folder: Path, *arguments: str, **environment: str) -> Answer:
-    """The command in its own process and folder."""
+    """Run the command in a separate process, in a folder."""
     return ran(folder, sys.executable, "-m", "rolling_ellipse", *arguments, **environment)
 
 
@@ -114,8 +112,8 @@ def test_the_command_without_options_runs_the_report_scene(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
 def test_a_console_of_any_encoding_gets_the_output(encoding: str, tmp_path: Path) -> None:
-    """The output has eleven events, a name that such consoles cannot show, an accent, and a
-    refusal."""
+    """The output has many events, a file name that some consoles cannot show, an accent, and an
+    error message."""
     told = {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
     falls = ["--theta", "0.4", "--friction", "0.2", "--omega", "4", "--slope", "0.1"]
     code, out, err = typed(tmp_path, *falls, "--time", "9", "--plot", "θ→.png", **told)
@@ -328,7 +326,6 @@ def test_the_summary_says_where_rolling_ends(command: Any) -> None:
 
 
 def test_a_motion_on_a_slope_has_a_summary(command: Any) -> None:
-    """A body on a slope rocks with a period, or runs downhill without one."""
     assert "slope = 0.1 rad" in command("--slope", "0.1", "--omega", "3", "--time", "2").out
     rocks = ("--slope", "0.1", "--omega", "0.5", "--time", "2", "--json")
     found = strict_json(command(*rocks).out)
@@ -387,7 +384,6 @@ def test_bad_input_gives_one_line_and_exit_code_2(
 
 
 def test_the_installed_command_runs_the_same_function(tmp_path: Path) -> None:
-    """The script that pip installs is the same function under another name."""
     (script,) = entry_points(group="console_scripts", name="rolling-ellipse")
     assert script.load() is command_line.run
     assert typed(tmp_path, "--version") == Answer(0, f"rolling-ellipse {rl.__version__}\n", "")
@@ -506,7 +502,6 @@ def test_the_command_works_with_closed_streams(tmp_path: Path) -> None:
 
 
 def test_an_interrupted_command_prints_nothing(tmp_path: Path) -> None:
-    """Ctrl-C during the work ends the command without an error message."""
     program = (
         "import os, signal, sys\n"
         "from rolling_ellipse import __main__ as command_line\n"

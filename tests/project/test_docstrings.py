@@ -16,7 +16,7 @@ import pytest
 import rolling_ellipse as rl
 from _pytest.doctest import _get_checker
 
-# functions of `report` that are checked; its docstring explains the thirty or so similar formulas
+# functions of `report` that are checked; the module's docstring explains its many similar formulas
 OF_THE_REPORT = ("simulate", "errata", "constraint_matrix", "multipliers")
 FOR_FILES = ("computed",)  # a method for files, pickles and `sol`, not for users
 HEADING = re.compile(r"\n(?:Parameters|Attributes|Returns|Raises|Notes|References|Examples)\n---")
@@ -48,7 +48,7 @@ NAMES[rl] = "rolling_ellipse"
 
 
 def test_all_public_names_are_found_and_their_help_starts_with_a_short_text() -> None:
-    """The first line is a sentence, and at most eight lines precede the first heading."""
+    """The first line is a sentence, and at most eight more lines precede the first heading."""
     assert len(NAMES) == 162, sorted(NAMES.values())
     for of, name in NAMES.items():
         first, *others = HEADING.split(inspect.getdoc(of) or "")[0].strip().splitlines()

@@ -15,13 +15,11 @@ CELLS = nbformat.read(ROOT / "notebooks" / "02_physics.ipynb", 4).cells
 
 
 def headings(cell: nbformat.NotebookNode) -> list[int]:
-    """Numbers of the formulas that a cell defines."""
     found = re.findall(r"^### \((\d+)\) \S", cell.source, re.MULTILINE)
     return [int(number) for number in found] if cell.cell_type == "markdown" else []
 
 
 def citations(text: str) -> list[int]:
-    """Numbers of the formulas that a source text cites."""
     found = re.findall(r"\bphysics \(([^)]*)\)", re.sub(r"\n *// ", " ", text))
     return [int(number) for numbers in found for number in numbers.split(",")]
 

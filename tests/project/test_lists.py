@@ -1,8 +1,8 @@
 """The lists "To add ..." of docs/architecture.md name every file that an addition must change.
 
 For each kind of addition, the list must have exactly the sources that name all existing things of
-that kind, and a list fails if one of its files moves. PLACES has patterns of code that depends on a
-law or a processor; its lists may name functions instead of files.
+that kind. PLACES has patterns of code that depends on a law or a processor; its lists may name
+functions instead of files. A test fails if a file on a list moves.
 """
 
 import ast
@@ -25,7 +25,7 @@ NAME = re.compile(r"`([\w/.]+\.(?:hpp|cpp|pyi|py))`")
 
 
 def of_room(room: str) -> list[str]:
-    """Public names that the package imports from a room, by `__init__.pyi`."""
+    """Public names that the package imports from a room, according to `__init__.pyi`."""
     lines = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8")).body
     imports = [line for line in lines if isinstance(line, ast.ImportFrom)]
     return [line.names[0].name for line in imports if (line.module or "").startswith(room)]

@@ -25,7 +25,7 @@ BOUND = 1e4 * TOLERANCE
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[list[Any], dict[str, str]]]:
-    """The installed and the missing peers; compiled files go to a folder of the suite."""
+    """The installed and the missing peers; compiled files go to a temporary folder."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         installed, missing = peers.available()
@@ -112,7 +112,7 @@ def test_scenes_that_do_not_roll_are_rejected(found: Any) -> None:
 
 
 def test_a_peer_with_a_wrong_equation_is_detected() -> None:
-    """A peer with gravity 1e-3 too strong errs by the difference of the two exact motions."""
+    """If gravity is too strong by 1e-3, the error is the difference of the two exact motions."""
 
     def wrong(theta: Any, omega: Any, body: Any) -> Any:
         return RATES(theta, omega, (*body[:4], 1.001 * body[4], body[5]))
@@ -124,10 +124,7 @@ def test_a_peer_with_a_wrong_equation_is_detected() -> None:
 
 
 def test_the_quick_benchmark_lists_every_contender(found: Any, capsys: Any) -> None:
-    """The benchmark's judge is independent of the package, and its table has every contender.
-
-    An hour is allowed so that the load of the machine does not matter.
-    """
+    """An hour is allowed so that the load of the machine does not matter."""
     ((_, race),) = bench_peers.main(["--quick", "--seconds", "3600"]).items()
     printed = capsys.readouterr().out
     for library, reason in found[1].items():
@@ -143,8 +140,8 @@ def test_the_quick_benchmark_lists_every_contender(found: Any, capsys: Any) -> N
     assert "empty call   known scene     new scene" in printed
 
 
-def test_a_peer_that_is_ahead_is_printed_as_such() -> None:
-    """A peer without any cost is ahead of the package at the errors that it reaches."""
+def test_a_peer_that_is_ahead_of_the_package_is_marked() -> None:
+    """A peer that takes no time is ahead of the package at the errors that it reaches."""
 
     class Lucky:
         name, library = "lucky", "none"
@@ -168,8 +165,8 @@ def test_a_race_in_a_well_lasts_a_multiple_of_half_its_period() -> None:
     assert bench_peers.end_of(scene, 0.42) == 0.42 * period(scene) / 2
 
 
-def test_the_judge_detects_a_small_error() -> None:
-    """The judge shares no code with exact rolling; both agree to a few roundings of theta = 7."""
+def test_the_reference_of_a_race_reveals_a_small_error() -> None:
+    """The reference shares no code with exact rolling, but agrees to a few ulp of theta = 7."""
     exact = bench_peers.in_40_digits(R)
     off = [float(v[0] - own) for v, own in zip(exact([T]), exact_end(T), strict=True)]
     assert 0 < max(map(abs, off)) < 1e-14

@@ -41,17 +41,17 @@ def test_physical_values_agree_to_all_known_digits(
 
 
 def test_the_centre_path_agrees_with_project_euler_525() -> None:
-    """In Project Euler 525 the centre of a 4:2 ellipse moves C = 21.38816906 m in one turn, the
-    integral of |d(x, h)/d theta| = r; here it is computed from the rates of a motion."""
+    """In Project Euler 525 the centre of a 4:2 ellipse moves 21.38816906 m along its path in one
+    turn. Here the length of the path is computed from the velocities of a motion."""
     turning = Scene(4.0, 2.0, omega=3.0)
     trajectory = rl.simulate(turning, np.linspace(0, period(turning), 2001))
     speed = np.hypot(trajectory.x_dot, trajectory.z_dot)
-    # for a smooth periodic function the trapezoidal rule is exact to rounding
+    # for a smooth periodic function the trapezoidal rule is exact to within rounding
     way = float(np.sum((speed[1:] + speed[:-1]) / 2 * np.diff(trajectory.t)))
     assert round(way, 8) == 21.38816906
 
 
-def test_no_body_above_an_aspect_of_9_753_rolls_over_by_rolling_alone() -> None:
+def test_no_body_with_an_aspect_ratio_above_9_753_rolls_over_in_contact() -> None:
     """N at the roll-over speed reaches 0 for a/b = 9.7532168."""
     ratio = 9.7532168
     for change, possible in ((-1e-7, True), (1e-7, False)):

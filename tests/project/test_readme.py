@@ -65,7 +65,8 @@ def test_the_residuals_in_a_guide_agree_with_its_printed_output(capsys: Any) -> 
 
 
 def test_the_reference_tables_have_the_stated_number_of_motions() -> None:
-    """A motion has three lines in the table of slopes, and a line per event in the last two."""
+    """A motion has three lines in the table of slopes, and a line per event in the last two
+    tables."""
     page = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
     said = dict(re.findall(r"\| `(\w+)_reference\.csv` \| (\d+) ", page))
     level, slope, gentle, *events = (table.rows(f"{name}_reference") for name in said)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from hypothesis import HealthCheck, settings
 
-#: Folder for constants of the sources, which hypothesis tries as numbers, outside the checkout.
+#: Folder, outside the checkout, for the constants that Hypothesis collects from the sources.
 FOLDER = Path(tempfile.gettempdir()) / "rolling_ellipse_hypothesis"
 
 examples = os.environ.get("ROLLING_ELLIPSE_EXAMPLES")

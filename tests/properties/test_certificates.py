@@ -56,7 +56,7 @@ def test_the_required_friction_is_just_enough(data: Any) -> None:
 
 
 @given(st.data())
-def test_neither_mass_nor_units_nor_mirroring_changes_the_answer(data: Any) -> None:
+def test_neither_units_nor_mirroring_changes_a_certificate(data: Any) -> None:
     scene = data.draw(rolling_scenes())
     units = (*(data.draw(st.integers(-12, 12)) for _ in range(3)),)
     mirror = scene.replace(theta=-scene.theta, omega=-scene.omega, slope=-scene.slope)

@@ -29,8 +29,8 @@ MET = {  # labels of findings that must occur, by study
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("study", STUDIES)
-def test_a_motion_continues_from_what_it_returns(study: str) -> None:
-    """A motion continues from its ends, its events, and scenes where `max_events` stopped it."""
+def test_a_motion_continues_from_any_state_that_it_returns(study: str) -> None:
+    """The states are ends, states at events, and states where `max_events` stopped the motion."""
     met = set()
     for block in range(BLOCKS):
         found = judge(study, SEED, block)

@@ -33,7 +33,6 @@ def known_to_where_shifted(t: float, turned: dict[str, float], shift: float) -> 
 
 @given(st.data())
 def test_the_mirror_image_agrees_bit_for_bit(data: Any) -> None:
-    """x -> -x changes no bit: the arithmetic prefers no side."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
     image = motion | {"theta": -motion["theta"], "omega": -motion["omega"]}
@@ -44,8 +43,6 @@ def test_the_mirror_image_agrees_bit_for_bit(data: Any) -> None:
 
 @given(st.data())
 def test_a_backward_motion_equals_a_forward_one_with_reversed_speed(data: Any) -> None:
-    """A motion backwards in time equals one with the opposite speed to within rounding, because the
-    phase is counted from the other side."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))
@@ -57,8 +54,6 @@ def test_a_backward_motion_equals_a_forward_one_with_reversed_speed(data: Any) -
 
 @given(st.data())
 def test_scaling_units_by_powers_of_two_changes_no_bit(data: Any) -> None:
-    """Units of length and time change no bit, because the computation scales every value by a
-    product of units."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
     metre, second = (2.0 ** data.draw(st.integers(-20, 20)) for _ in range(2))
@@ -79,7 +74,6 @@ def in_units(motion: dict[str, float], metre: float, second: float) -> dict[str,
 
 @given(st.data())
 def test_units_of_any_size_do_not_change_the_motion(data: Any) -> None:
-    """Units of any size change the motion by no more than the rounding of its inputs."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))
@@ -92,7 +86,6 @@ def test_units_of_any_size_do_not_change_the_motion(data: Any) -> None:
 
 @given(st.data())
 def test_exchanging_the_axes_equals_a_quarter_turn(data: Any) -> None:
-    """A body with a and b exchanged is the same body after a quarter turn."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))
@@ -134,7 +127,7 @@ def test_two_successive_moves_equal_a_single_one(data: Any) -> None:
 
 
 def energy(theta: float, omega: float, a: float, b: float, gravity: float, gyration2: float) -> Any:
-    """Energy per mass E/m [m^2/s^2]."""
+    """Energy per unit mass E/m [m^2/s^2]."""
     h = geometry.support(theta, a=a, b=b)
     slope = geometry.support_slope(theta, a=a, b=b)
     kinetic = 0.5 * (gyration2 + h * h + slope * slope) * omega**2

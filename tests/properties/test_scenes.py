@@ -77,7 +77,6 @@ def test_the_mirror_image_agrees_bit_for_bit(data: Any) -> None:
 
 @given(st.data())
 def test_scaling_units_by_powers_of_two_changes_no_bit(data: Any) -> None:
-    """Units of length, time and mass change no bit, on slopes and through all events as well."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
     units = (*(data.draw(st.integers(-12, 12)) for _ in range(3)),)
@@ -100,10 +99,10 @@ def test_a_shift_along_the_ground_changes_only_x(data: Any) -> None:
     for name in (*ODD, *EVEN):
         if name != "x":
             assert np.array_equal(getattr(one, name), getattr(other, name)), name
-    # x is a sum with one rounding per event, and few within an arc
+    # x is a sum with one rounding per event, and a few within an arc
     sums = 4 + 4 * len(one.events)
     size = abs(away) + np.max(np.abs(one.x), initial=0.0)
-    subnormal = 5e-324 * max(1.0, scene.a, scene.b)  # smallest length in units of the body
+    subnormal = 5e-324 * max(1.0, scene.a, scene.b)  # smallest double, times the size of the body
     assert np.all(np.abs(one.x + away - other.x) <= sums * (EPS * size + subnormal))
 
 
@@ -116,7 +115,7 @@ def blur(scene: Scene, state: InitialState) -> float:
 
 
 def surface_speed(scene: Scene, state: InitialState) -> float:
-    """Sum of the two terms whose difference is the slip, without signs [m/s]."""
+    """Sum of the magnitudes of the two terms of the slip [m/s]."""
     return abs(state.x_dot) + abs(state.omega) * max(scene.a, scene.b)
 
 

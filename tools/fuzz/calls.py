@@ -1,4 +1,4 @@
-"""Cases: a call to a public function by its signature, or a motion and questions about it.
+"""Cases of the fuzzer, such as a call to a public function, or a motion and calls that use it.
 
 A case is a list of lines of Python. Each line is an expression, assigned to a name if later lines
 use its value. A line with the word "forged" uses damaged data, which may contain NaN and break
@@ -21,7 +21,7 @@ from .scenes import Body
 from .values import SHAPES, Draw, call
 
 MODULES = {"rl": rl, "rl.geometry": rl.geometry, "rl.impacts": rl.impacts, "rl.report": rl.report}
-#: Public functions by the names that lines use.
+#: Public functions by their names in the lines.
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     f"{prefix}.{name}": getattr(module, name)
     for prefix, module in MODULES.items()
@@ -29,7 +29,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     if inspect.isfunction(getattr(module, name))
 }
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
-#: Functions with special cases; `any_function` does not draw them.
+#: Functions with cases of their own, which `any_function` does not draw.
 OWN = ("rl.simulate", "rl.simulate_many", "rl.ends", "rl.load", "rl.load_many", *PICTURES)
 #: Functions that use files or take seconds per call; tests/refusals tests their arguments.
 SLOW = (
@@ -50,7 +50,7 @@ def _time(draw: Draw, of: Body) -> float:
     return draw.pick(1, -1) * of.clock * size
 
 
-#: Draws a number by the name of its argument; functions of arrays get arrays of such numbers.
+#: How to draw a number for an argument, by its name; functions of arrays get arrays of these.
 NUMBERS: dict[str, Callable[[Draw, Body], float]] = {
     **{name: _beside(name) for name in ("a", "b", "mass")},
     "t": _time,
@@ -67,7 +67,7 @@ NUMBERS: dict[str, Callable[[Draw, Body], float]] = {
     **dict.fromkeys(("d", "distance"), lambda d, of: of.length * d.between(-1, 1)),
     **dict.fromkeys(("jx", "jz", "dx", "dz"), lambda d, _: d.between(-3, 3)),
 }  # fmt: skip
-#: How the names of functions begin whose arguments are single numbers.
+#: Prefixes of the names of functions whose arguments are single numbers.
 OF_NUMBERS = ("thresholds", "blow_to", "fit", "eq_48", "struck_speed", "simulate")
 
 
@@ -80,7 +80,7 @@ def _vector(entries: int) -> Ask:
 
 
 def _state(place: int) -> Ask:
-    """A state on the constraints, or any state."""
+    """Coordinates (place 0) or velocities (place 1) that meet the constraints, or any numbers."""
 
     def asked(draw: Draw, of: Body) -> object:
         if draw.chance(0.3):
@@ -116,7 +116,7 @@ OTHERS: dict[str, Ask] = {
     "complete": _one("True", "False"), "case": _one("'1'", "'2'", "'as_it_is'"),
     "to": _one("'roll'", "'rest'"), "wrt": _one("'t'", "'theta'", "('a', 'omega')", "('gravity',)"),
     "impulse": lambda d, of: d.pick("None", scenes.impulse(d, of)),
-    # options of the report's motion
+    # options of `report.simulate`
     "equations": _one("'corrected'", "'printed'"), "method": _one("'dopri5'", "'rk4'", "'dop853'"),
     "consistent": _one("'refuse'", "'project'", "'as_given'"),
     "stabilization": _one("'none'", "'baumgarte'", "'projection'"), "baumgarte": _one((1.0, 1.0)),
@@ -147,7 +147,7 @@ def arguments(draw: Draw, of: Body, name: str) -> dict[str, str]:
 
 
 def any_function(draw: Draw, of: Body) -> list[str]:
-    """One call to a public function, and the texts that represent its result."""
+    """One call to a public function, and the representations of its result as text and HTML."""
     asked = (*["rl.flow"] * 6, *["rl.classify", "rl.certify", "rl.period", "rl.blow_to"] * 3)
     asked += ("rl.outcome", "rl.thresholds", "rl.impacts.collide", "rl.report.simulate") * 2
     name = draw.pick(*asked, *PLAIN)
@@ -192,7 +192,7 @@ QUANTITY = "trajectory.{quantity}"
 FORGED = ("forged.{quantity}",) * 3
 SAME = "promises.same(trajectory, other)"
 
-#: Questions about a motion, with their weights; `filled` draws texts for the names in braces.
+#: Lines that use a motion, with their weights; `filled` replaces the names in braces.
 QUESTIONS: tuple[tuple[int, tuple[str, ...]], ...] = (
     (20, (QUANTITY, QUANTITY, QUANTITY)),
     (4, ("(repr(trajectory), hash(trajectory), trajectory._repr_html_())",
@@ -232,7 +232,7 @@ WEIGHTED = tuple(lines for weight, lines in QUESTIONS for _ in range(weight))
 
 
 def filled(draw: Draw, of: Body, line: str) -> str:
-    """A line whose names in braces are replaced by drawn texts."""
+    """Replace each name in braces in a line by a randomly drawn expression."""
 
     def picture() -> str:
         name = draw.pick(*(name for name in PICTURES if name != "rl.plot_phase_map"))
@@ -268,7 +268,7 @@ def filled(draw: Draw, of: Body, line: str) -> str:
 
 
 def motion(draw: Draw, of: Body) -> list[str]:
-    """A motion, and up to two questions about it."""
+    """A motion, and up to two groups of lines that use it."""
     t, last = scenes.times(draw, of)
     asked = {"scene": scenes.scene(draw, of, 0.03), "t": t, **scenes.settings(draw, last)}
     asked = draw.mutated(asked) if draw.chance(0.35) else asked
@@ -331,7 +331,7 @@ CONTENTS = (
     f"b'{_TABLE}'.replace(b',', b';')", f"b'{_TABLE}'.replace(b'0', b'\"')",
     "b'{{}}'", "b'PK\x03\x04'",
 )  # fmt: skip
-#: Calls that read or write files at a path at which there may be a hostile object.
+#: Calls that read or write at a path where a hostile object may be.
 ON_FILES = (
     *["rl.load(path='there/a')", "rl.WorkPrecision.load(path='there/a')"],
     *["forged = rl.read_track(path='there/a', t='t', x='x', z='z', scale={extreme})"] * 3,
@@ -379,7 +379,6 @@ _KINDS = tuple(kind for kind, weight in CASES.items() for _ in range(weight))
 
 @st.composite
 def cases(draw: st.DrawFn) -> list[str]:
-    """Draw the lines of one case."""
     choices = Draw(draw)
     kind = choices.pick(*_KINDS)
     return kind(choices, scenes.body(choices))

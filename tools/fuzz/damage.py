@@ -1,4 +1,4 @@
-"""Damage to the package's files; positions are fractions of the whole.
+"""Damage to the package's files; a position is given as a fraction of the whole.
 
 `tests/refusals/files.py` has the individual kinds of broken archives.
 """
@@ -38,7 +38,6 @@ def put(kind: str, path: str, content: bytes = b"") -> str:
 
 
 def flip(path: str, share: float, mask: int) -> None:
-    """Flip bits of one byte."""
     data = bytearray(Path(path).read_bytes())
     data[int(share * len(data))] ^= mask
     Path(path).write_bytes(data)

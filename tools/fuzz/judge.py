@@ -35,7 +35,7 @@ OWN_WARNINGS = (
     "ValidityWarning", "InconsistentStartWarning", "StabilityWarning", "CompletenessWarning",
 )  # fmt: skip
 _FIELDS = {field.name for kind in (rl.Scene, rl.Impulse) for field in fields(kind)}
-# Words of messages about several arguments at once.
+# Parts of messages about several arguments at once.
 _TOGETHER = ("arguments must broadcast", "missing 1 required", "unsupported pickle",
              "cannot pickle", "of roll.rock must")  # fmt: skip
 _NOT_FINITE = re.compile(

@@ -99,7 +99,6 @@ class Process:
         return process
 
     def findings(self, lines: list[str]) -> list[Finding]:
-        """The findings from the lines of a case."""
         self._process = process = self._process or self._start()
         i = 0
         try:

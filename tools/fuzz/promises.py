@@ -1,7 +1,7 @@
 """Promises about results: finite numbers, arrays that fit together, copies that are equal.
 
-The checks of a result yield each broken promise as its kind and a sentence. The comparisons, which
-are lines of cases, raise `Broken`.
+The checks of a result yield the kind of each broken promise and a sentence about it. The
+comparisons are called in the lines of a case and raise `Broken`.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def of_trajectory(found: rl.Trajectory) -> Finds:
         values = getattr(found, name)
         if values.shape != t.shape or values.flags.writeable:
             yield "broken", f"{name} has not one entry for each of t, or can be written to"
-        # A step that is too large may overflow before its end; its status is STEP_TOO_LARGE.
+        # A step that is too large may overflow before its end; the status is STEP_TOO_LARGE then.
         if name != "mode" and found.status is not rl.Status.STEP_TOO_LARGE:
             if np.isnan(values).any():
                 yield "nan", f"NaN in {name}"
@@ -134,9 +134,9 @@ def energy_growth(found: rl.Trajectory) -> float:
 def _blur(found: rl.Trajectory) -> float:
     """Relative error of the energy due to rounded angles and the setting `rest_speed`.
 
-    The relative change per radian is 1.6 a/b for D, a/2b for h; with infinite friction the forces
-    depend on the distance to a tip; bounces below rest_speed are summed, with an error of at most
-    1/100.
+    The inertia of rolling changes by at most 1.6 a/b of its value per radian, and h by a/2b. With
+    infinite friction the forces depend on the distance to a tip. Bounces slower than rest_speed are
+    summed, with an error of at most 1/100.
     """
     scene, theta = found.scene, found.theta
     ulp = np.spacing(np.abs(theta).max())

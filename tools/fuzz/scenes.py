@@ -1,4 +1,4 @@
-"""Scenes, times and settings as source text: mostly valid, everyday or extreme."""
+"""Scenes, times and settings as source text: mostly valid, with common or extreme numbers."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Body:
 
     @property
     def clock(self) -> float:
-        """Natural time of falling over [s]."""
+        """Natural time sqrt(length / g) [s]."""
         return math.sqrt(self.length / self.values["gravity"])
 
 
@@ -75,7 +75,6 @@ def angle(draw: Draw, _: Body) -> float:
 
 
 def speed(draw: Draw, of: Body) -> float:
-    """Draw an angular velocity [rad/s]."""
     size = draw.pick(0.0, draw.between(0, 4), draw.power(-20, 6), draw.power(-300, 0))
     return draw.pick(1, -1) * size / of.clock
 
@@ -89,7 +88,7 @@ def friction(draw: Draw, _: Body) -> float:
 
 
 def impulse(draw: Draw, of: Body) -> str:
-    """Draw an impulse: about 1 N s for a body of 1 kg, mostly within the body."""
+    """Draw an impulse that gives a body of 1 kg about its natural speed, mostly within the body."""
     strength = 3 * of.length / of.clock
     reach = draw.pick(0.7 * min(of.values["a"], of.values["b"]), of.length)
     values = [repr(size * draw.between(-1, 1)) for size in (strength, strength, reach, reach)]
@@ -112,7 +111,7 @@ def scene(draw: Draw, of: Body, mutate: float = 0.0) -> str:
 def times(draw: Draw, of: Body) -> tuple[str, float]:
     """Source text of sample times, and the last of these times."""
     last = of.clock * draw.pick(draw.between(0, 12), draw.between(0, 12), draw.power(-3, 2))
-    if draw.chance(0.08):  # long enough for long climbs of slopes and many half turns
+    if draw.chance(0.08):  # long enough for long climbs up slopes and many half turns
         last = of.clock * draw.power(1, 8)
     if draw.chance(0.12):
         last = draw.pick(0.0, 5e-324, 1e300, draw.power(-320, 300), draw.power(-6, 6) * of.clock)

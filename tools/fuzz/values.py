@@ -32,7 +32,7 @@ DRESSED = (
     "type('Mine', (float,), {})(2.0)", "type('Whole', (), {'__index__': lambda self: 3})()",
 )  # fmt: skip
 
-# Values that are not one number.
+# Values that are not a single number.
 WRONG = (
     "None", "'1'", "'nan'", "''", "b'1'", "bytearray(b'1')", "1j", "complex(1, 0)",
     "np.complex64(1)", "np.complex128(2)", "np.array([1 + 2j, 3])", "np.ma.masked",
@@ -110,7 +110,6 @@ class Draw:
         return value
 
     def extreme(self) -> str:
-        """Draw an extreme number."""
         kind = self.whole(0, 3)
         if kind == 0:
             return repr(self.pick(1, 1, -1) * 2.0 ** self.whole(-1074, 1023))
@@ -131,7 +130,6 @@ class Draw:
         return found
 
     def odd(self, name: str) -> str:
-        """A hostile value for an argument."""
         return self.pick("0", "-1", "nan", *WRONG) if name in WORK else self.hostile()
 
     def array(self, values: Sequence[float], shape: tuple[int, ...] | None = None) -> str:
