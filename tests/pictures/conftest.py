@@ -32,8 +32,8 @@ def report() -> rl.Trajectory:
 
 @pytest.fixture
 def several(report: rl.Trajectory) -> list[rl.Trajectory]:
-    """A rolling motion, and two simulations of it with Lagrange multipliers whose steps violate the
-    constraints."""
+    """A rolling motion, and two simulations of it with Lagrange multipliers, whose steps are so
+    long that the constraints drift."""
     how: dict[str, Any] = {"model": "multipliers", "method": "rk4", "stabilization": "none"}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.StabilityWarning)

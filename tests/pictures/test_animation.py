@@ -49,7 +49,7 @@ def only(animation: RollingAnimation) -> Strip:
      (2, 2, "t = 1 s   speed × 2"), (25, 0.01, "t = 0.0004 s   speed × 0.01"),
      (30, 1, "t = 0.033 s"), (25, 1e-7, "t = 0.000000004 s   speed × 1e-07")],
 )  # fmt: skip
-def test_each_frame_has_its_own_time(report: Any, fps: float, speed: float, second: str) -> None:
+def test_the_clock_distinguishes_frames(report: Any, fps: float, speed: float, second: str) -> None:
     animation = rl.animate(report, fps=fps, speed=speed, t_end=1.5 * speed / fps)
     animation.draw(1)
     assert animation.clock.get_text() == second
@@ -97,7 +97,7 @@ def view_of(animation: RollingAnimation) -> tuple[tuple[float, float], tuple[flo
 @pytest.mark.parametrize(
     ("t_end", "follows"), [(4.0, False), (12.0, False), (40.0, True)], ids=["1", "3", "9 turns"]
 )
-def test_the_camera_follows_only_after_three_turns(t_end: float, follows: bool) -> None:
+def test_the_camera_follows_motions_of_more_than_three_turns(t_end: float, follows: bool) -> None:
     animation = rl.animate(rl.simulate(rl.scenes.report, 40.0), t_end=t_end, fps=5)
     views = set()
     for i in frames(animation):
@@ -137,7 +137,7 @@ def test_arrows_show_the_forces_of_the_ground_and_the_blow(scene: rl.Scene) -> N
         at, arrows = strip.motion, strip.arrows
         N, F = (2 * np.clip(f[i] / weight, -3, 3) for f in (at.normal_force, at.friction_force))
         fresh = scene.impulse is not None and film.t[i] < 1.2
-        vectors = np.array([1j * N, F, -1.8j if fresh else 0])  # x + iz, turned down the slope
+        vectors = np.array([1j * N, F, -1.8j if fresh else 0])  # x + iz in ground axes
         seen = np.array([arrows.U, arrows.V]).T @ [1, 1j]
         assert seen == pytest.approx(turn * vectors, abs=1e-9)
         assert strip.names[2].get_text() == ("  48 N s" if fresh else "")
@@ -168,7 +168,7 @@ def test_a_panel_below_the_strips_follows_the_motion(report: rl.Trajectory, pane
 
 @pytest.mark.parametrize("scene", [rl.scenes.slope, rl.scenes.drop])
 def test_written_frames_equal_those_of_matplotlib(scene: rl.Scene, tmp_path: Path) -> None:
-    """The package draws still parts once and moving parts over them; the pixels are the same."""
+    """The package draws the still parts once and the moving parts over them."""
     film = rl.animate(rl.simulate(scene, 20.0), forces=True, width=320, fps=10)
     for i, pixels in zip((3, 9), film._pixels((3, 9)), strict=True):
         film.frame(float(film.t[i]) + 1e-3, tmp_path / "frame.png")
@@ -179,7 +179,7 @@ def test_written_frames_equal_those_of_matplotlib(scene: rl.Scene, tmp_path: Pat
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("slope", [0.4, 1.2, -1.5])
 def test_a_slope_has_ticks_where_it_is_visible(slope: float) -> None:
-    """The ticks reach the edges of the view, but not so far that matplotlib cannot draw them."""
+    """The ticks extend beyond the view, but not so far that matplotlib cannot draw them."""
     scene = rl.Scene(2.0, 1.0, theta=0.3, omega=1.0, slope=slope)
     animation = rl.animate(rl.simulate(scene, 1.0, model="rolling"), fps=25, width=160)
     strip = only(animation)
@@ -226,7 +226,7 @@ def test_an_html_film_is_a_page_with_a_player(short: RollingAnimation, tmp_path:
     assert list(tmp_path.iterdir()) == [path]  # no other file beside it
 
 
-def test_the_html_of_matplotlib_has_every_frame(short: RollingAnimation, tmp_path: Path) -> None:
+def test_matplotlibs_html_has_every_frame(short: RollingAnimation, tmp_path: Path) -> None:
     path = tmp_path / "roll.html"
     short.save(path, writer=HTMLWriter(fps=25, embed_frames=True))
     embedded = re.findall(r'frames\[(\d+)\] = "data:image/png;base64,', path.read_text("utf-8"))
@@ -261,7 +261,7 @@ def test_a_notebook_shows_the_player(short: RollingAnimation) -> None:
 @pytest.mark.parametrize(
     ("wanted", "marks"), [("jshtml", "data:image/png;base64,"), ("html5", "<video")]
 )
-def test_a_notebook_obeys_animation_html(short: Any, wanted: str, marks: str) -> None:
+def test_a_notebook_obeys_the_setting_animation_html(short: Any, wanted: str, marks: str) -> None:
     with matplotlib.rc_context({"animation.html": wanted}):
         html = short._repr_html_()
     assert marks in html and "rolling-ellipse" not in html
@@ -282,10 +282,10 @@ MINUTE = rl.simulate(rl.scenes.report, 100.0)
 @pytest.mark.parametrize(
     ("options", "count", "last"),
     [
-        ({"t_end": 20.0, "fps": 25}, 501, 20.0),  # less than a quarter of the motion
+        ({"t_end": 20.0, "fps": 25}, 501, 20.0),
         ({"t_end": 20.0}, 1001, 20.0),
         ({"t_end": 60.0, "fps": 10}, 601, 60.0),
-        ({"fps": 10}, 363, 100.0),  # the default film lasts a minute at most: three parts of 12 s
+        ({"fps": 10}, 363, 100.0),  # three excerpts of 12 s, because 100 s exceed a minute
         ({"fps": 10, "speed": 1.0}, 1001, 100.0),
         ({"speed": 4.0, "fps": 25}, 626, 100.0),
         ({"t_end": 0.58, "fps": 50}, 30, 0.58),
@@ -293,7 +293,7 @@ MINUTE = rl.simulate(rl.scenes.report, 100.0)
         ({"t_end": 0.0}, 1, 0.0),
     ],
 )
-def test_a_film_shows_the_whole_motion(options: dict[str, Any], count: int, last: float) -> None:
+def test_options_set_the_length_of_a_film(options: dict[str, Any], count: int, last: float) -> None:
     animation = rl.animate(MINUTE, width=160, **options)
     assert animation.t.size == count
     assert animation.t[-1] == pytest.approx(last, abs=1e-14)
@@ -302,7 +302,7 @@ def test_a_film_shows_the_whole_motion(options: dict[str, Any], count: int, last
 @pytest.mark.parametrize("speed", [0.25, 4.0])
 @pytest.mark.parametrize("fps", [25, 100 / 3, 50, 60])
 @pytest.mark.parametrize("suffix", [".gif", ".mp4", ".webm", ".html"])
-def test_a_film_is_as_long_as_its_motion(
+def test_a_film_lasts_as_long_as_its_motion_divided_by_the_speed(
     report: rl.Trajectory, tmp_path: Path, suffix: str, fps: float, speed: float
 ) -> None:
     import imageio_ffmpeg
@@ -318,9 +318,9 @@ def test_a_film_is_as_long_as_its_motion(
     if suffix == ".gif":
         found = sum(gif_frames(path.read_bytes())[1]) / 1000
     else:
-        count, found = imageio_ffmpeg.count_frames_and_secs(str(path))  # seconds to 2 digits
+        count, found = imageio_ffmpeg.count_frames_and_secs(str(path))  # found has 2 decimals
         assert count == 1 + round(seconds * fps)
-    # the last frame is shown for the duration of a frame, too
+    # the last frame, too, is shown for 1/fps
     assert found - seconds == pytest.approx(1 / fps, abs=1e-9 if suffix == ".gif" else 0.011)
 
 
@@ -426,7 +426,7 @@ def test_the_figure_keeps_the_animation_alive(report: rl.Trajectory) -> None:
 @pytest.mark.parametrize(
     ("framework", "windows"), [("tk", 1), ("qt", 1), ("nbagg", 0), ("webagg", 0), (None, 0)]
 )
-def test_only_a_window_system_opens_a_window(
+def test_only_a_desktop_backend_opens_a_window(
     report: rl.Trajectory, tmp_path: Path, monkeypatch: Any, framework: Any, windows: int
 ) -> None:
     registry = "matplotlib.backends.registry.backend_registry"
@@ -443,8 +443,8 @@ def test_only_a_window_system_opens_a_window(
 
 
 def test_a_page_leaves_no_garbage_to_collect(report: rl.Trajectory, tmp_path: Path) -> None:
-    """A film written as a page has no reference cycles: a Ctrl-C that arrives while Python collects
-    cycles would be lost."""
+    """A film written as a page must have no reference cycles, because a Ctrl-C that arrives while
+    Python collects them is lost."""
     rl.animate(report, tmp_path / "roll.html")  # loads all modules
     gc.collect()
     gc.disable()
@@ -471,7 +471,7 @@ def test_a_film_written_as_a_page_is_drawn_on_demand(report: rl.Trajectory, tmp_
 def test_a_page_whose_drawing_failed_can_be_drawn_again(
     report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """An interrupted drawing leaves no half-built figure, since Ctrl-C may come at any time."""
+    """Ctrl-C may interrupt a drawing at any time; it must not leave a half-built figure."""
     film = rl.animate(report, tmp_path / "roll.html")
     with monkeypatch.context() as patched:
         patched.setattr(Figure, "add_axes", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))

@@ -25,7 +25,7 @@ def test_each_of_several_motions_is_named(picture: Any, several: list[rl.Traject
     assert legend_of(ax)[:3] == ["one", "two", "three"]
 
 
-def test_only_some_of_many_motions_are_named(picture: Any, report: rl.Trajectory) -> None:
+def test_only_eight_of_twenty_motions_are_named(picture: Any, report: rl.Trajectory) -> None:
     ax = new_axes()
     picture([report] * 20, ax=ax, labels=[f"motion {i}" for i in range(20)])
     named = [text for text in legend_of(ax) if text.startswith("motion")]
@@ -53,7 +53,7 @@ def test_nothing_overlaps_at_320_by_240_pixels(
     frames = [ax.get_window_extent() for ax in axes if not ax.texts]
     boxes = [*texts_of(figure_of(axes[0])), *frames]
     for ax in axes:
-        # versions of matplotlib differ by a pixel in the heights of letters and of free space
+        # letters, and hence the space left, differ by a pixel between versions of matplotlib
         assert ax.bbox.width > 160 and ax.bbox.height > 85 / panels**2
     assert all(min(box.x0, box.y0) > 0 and box.x1 < 320 and box.y1 < 240 for box in boxes)
     assert not overlapping(boxes)
@@ -86,7 +86,7 @@ def test_invalid_times_have_a_grey_background(picture: Any, report: rl.Trajector
 
 
 @pytest.mark.parametrize("picture", [rl.plot_phase, rl.plot_paths])
-def test_the_ground_is_grey_where_a_path_is_invalid(picture: Any, report: rl.Trajectory) -> None:
+def test_invalid_parts_of_paths_have_a_grey_background(picture: Any, report: rl.Trajectory) -> None:
     (ground,) = picture(dataclasses.replace(report, valid_until=2.5), ax=new_axes()).marks
     turns = 6.0 if picture is rl.plot_paths else sampling.half_turns(report)
     drawn = sampling.between(report, 0.0, 6.0, turns)
@@ -97,7 +97,7 @@ ROLLING = rl.simulate(rl.scenes.rolling, 1.0)
 
 
 def motions(*scenes: rl.Scene) -> list[rl.Trajectory]:
-    """Trajectories with these scenes, but the samples of another motion; labels do not use them."""
+    """Trajectories of these scenes with the samples of another motion, which labels do not use."""
     return [dataclasses.replace(ROLLING, scene=scene) for scene in scenes]
 
 
@@ -120,12 +120,12 @@ def varied(**fields: Any) -> rl.Scene:
          ["a = 2 m, b = 0.02 m, theta = 0.3 rad, …", "a = 1 m, b = 1 m, theta = 0 rad, …"]),
     ],
 )  # fmt: skip
-def test_scenes_are_named_by_fields_that_differ(scenes: list[rl.Scene], names: list[str]) -> None:
+def test_labels_name_the_fields_that_differ(scenes: list[rl.Scene], names: list[str]) -> None:
     assert labels_of(motions(*scenes), None) == names
 
 
 @pytest.mark.parametrize("difference", [1e-3, 1e-9, 2**-52])
-def test_values_have_enough_digits_to_tell_them_apart(difference: float) -> None:
+def test_labels_have_enough_digits_to_tell_values_apart(difference: float) -> None:
     other = 3.2 * (1 + difference)
     names = labels_of(motions(varied(), varied(omega=other)), None)
     shown = [float(name.removeprefix("omega = ").removesuffix(" rad/s")) for name in names]

@@ -1,4 +1,4 @@
-"""Pictures of the ends of many motions, read back from their artists."""
+"""Pictures of the final states of many motions, read back from their artists."""
 
 from pathlib import Path
 from typing import Any
@@ -26,14 +26,16 @@ def test_a_line_shows_the_ends_in_ascending_order_of_the_argument() -> None:
     assert labels == ("omega0 [rad/s]", "x [m]")
 
 
-def test_a_map_has_the_last_axis_horizontal_and_its_colours_show_the_ends() -> None:
+def test_a_map_has_its_last_axis_horizontal_and_shows_the_ends_in_colour() -> None:
     omega, friction = np.array([[1.0], [5.0]]), [0.9, 0.1, 0.5]
     last = rl.ends(BODY | {"omega": omega, "friction": friction}, 1.0)
     figure = Figure()
     chart: Any = last.plot(ax=figure.add_subplot())
     assert np.array_equal(chart.values.get_array(), last.theta[:, [1, 2, 0]])
     assert (chart.ax.get_xlabel(), chart.ax.get_ylabel()) == ("friction", "omega0 [rad/s]")
-    assert chart.ax.get_xlim() == pytest.approx((-0.1, 1.1))  # a value is the middle of its cell
+    assert chart.ax.get_xlim() == pytest.approx(
+        (-0.1, 1.1)
+    )  # values are at the centres of their cells
     assert [ax.get_ylabel() for ax in figure.axes] == ["omega0 [rad/s]", "θ [rad]"]
 
 
@@ -57,8 +59,8 @@ def test_infinite_friction_is_plotted_next_to_the_largest_finite_value() -> None
     assert points(chart)[1].tolist() == last.x[::-1].tolist()
 
 
-def test_a_motion_that_ended_early_has_no_dot(tmp_path: Path) -> None:
-    """A list of scenes is plotted over the number of the scene."""
+def test_a_motion_that_ended_early_is_not_plotted(tmp_path: Path) -> None:
+    """The ends of a list of scenes are plotted against the numbers of the scenes."""
     jam = rl.Scene(2.0, 0.2, theta=-1.2, x_dot=-3.0, omega=0.0, friction=1.5)
     last = rl.ends([rl.scenes.report, jam], 2.0)
     chart = last.plot("z", tmp_path / "z.png")

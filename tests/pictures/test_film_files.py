@@ -33,7 +33,7 @@ def test_a_rejected_call_leaves_a_given_figure_empty() -> None:
 
 
 @pytest.mark.parametrize("draw", [rl.plot, rl.plot_strobe, *PICTURES.values()])
-def test_a_failing_drawing_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
+def test_a_failed_drawing_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
     mine = plt.figure()
     monkeypatch.setattr(Axes, "plot", lambda *args, **options: 1 / 0)
     with pytest.raises(ZeroDivisionError):
@@ -79,7 +79,7 @@ def test_an_old_film_stays_until_the_new_one_is_complete(
 
     def stops(i: int) -> Any:
         drawn.append(i)
-        if len(drawn) > 7:  # the background and three samples of colours are drawn first
+        if len(drawn) > 7:  # background and three frames for the palette come first
             raise error
         return draw(i)
 
@@ -90,8 +90,9 @@ def test_an_old_film_stays_until_the_new_one_is_complete(
 
 
 @pytest.mark.parametrize("draw", [rl.plot_strobe, rl.plot_paths, rl.plot, rl.animate])
-def test_a_body_too_far_away_to_be_seen_is_rejected(draw: Any) -> None:
-    """Doubles at 7.8e23 m are 1.3e8 m apart; at 1e12 m they are 0.1 mm apart, enough to draw."""
+def test_a_body_too_far_away_to_be_drawn_is_rejected(draw: Any) -> None:
+    """Adjacent doubles at 7.8e23 m are 1.3e8 m apart. At 1e12 m, where the body can be drawn, they
+    are 0.1 mm apart."""
     with pytest.raises(ValueError, match=r"^trajectory must stay where .*, got a centre 7\.8"):
         draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=7.847959263208443e23), 1.0))
     assert not plt.get_fignums()

@@ -50,16 +50,15 @@ def test_curves_of_motions_with_three_samples_follow_the_motion(motion: rl.Traje
         assert np.max(off) <= 3e-3 * np.ptp(values), name
 
 
-def test_a_uniform_grid_of_as_many_points_would_miss_spikes() -> None:
-    """A uniform grid with as many points misses the spikes of a thin body, so the check above can
-    fail."""
+def test_a_uniform_grid_with_as_many_points_misses_the_spikes_of_a_thin_body() -> None:
+    """Hence the test above fails if curves have uniform points."""
     motion = MOTIONS["very thin"]
     values = data(rl.plot_forces(motion, ax=new_axes()).normal[0])[1]
     even = motion.sol(np.linspace(0.0, float(motion.t[-1]), 1001)).normal_force
     assert np.max(even) < 0.7 * np.max(values)
 
 
-def test_the_phase_curve_of_1000_turns_follows_its_energy() -> None:
+def test_the_phase_curve_of_1000_turns_conserves_energy() -> None:
     ax = new_axes()
     shown = rl.plot_phase(ROLLING, ax=ax)
     theta, omega = data(shown.motions[0])
@@ -165,9 +164,9 @@ def test_overlapping_bodies_do_not_add_up_to_an_opaque_blot() -> None:
     assert np.all(pile(rl.plot_strobe(MOTIONS["report"], ax=new_axes())) > 0.09)
 
 
-def test_errors_from_rounding_the_angle_are_below_twice_the_line_for_it() -> None:
-    """Twice the rounding is allowed, because psi is the sum of two angles. The energy changes
-    less."""
+def test_errors_from_rounding_theta_stay_below_twice_the_line_that_marks_it() -> None:
+    """Twice the rounding is allowed, because the constraints contain psi, a sum of two angles. The
+    energy changes less."""
     later = rl.plot(ROLLING.sol(np.linspace(50.0, ROLLING.t_end, 99)), figure=Figure())
     panel = figure_of(later.ax).axes[-1]
     (limit,) = (line for line in panel.lines if line.get_label() == "rounding of θ")

@@ -42,7 +42,7 @@ def jump() -> rl.Trajectory:
 
 
 def drawn(ax: Axes) -> Axes:
-    """The axes, after a drawing that lays out their figure."""
+    """The axes, once their figure is drawn and laid out."""
     FigureCanvasAgg(figure_of(ax)).draw()
     return ax
 
@@ -90,7 +90,7 @@ def test_every_sample_lies_in_the_shading_of_its_mode(motion: rl.Trajectory) -> 
     assert legend_of(shown.ax)[3:] == names + COUNTED.get(motion.scene, [])
 
 
-def test_modes_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
+def test_modes_can_be_told_apart_in_greyscale(jump: rl.Trajectory) -> None:
     settling = rl.simulate(SCENES["settling"], 6.0)
     pictures = [rl.plot_energy(motion, ax=new_axes()) for motion in (jump, settling)]
     shades = [shade for shown in pictures for shade in shades_of(shown.marks)]
@@ -116,7 +116,7 @@ def test_events_are_drawn_as_named_lines(picture: Any, motion: rl.Trajectory) ->
 
 
 @pytest.mark.parametrize("name", ["jump", "slope", "slip", "backwards"])
-def test_names_overlap_neither_one_another_nor_the_curves(name: str) -> None:
+def test_event_names_overlap_neither_one_another_nor_the_curves(name: str) -> None:
     motion = rl.simulate(SCENES[name], 6.0)
     ax = drawn(rl.plot_forces(motion, ax=two_axes()).axes[0])
     names, window = event_names(ax), ax.get_window_extent()
@@ -130,12 +130,12 @@ def test_names_overlap_neither_one_another_nor_the_curves(name: str) -> None:
     assert min(box.y0 for box in boxes) > highest
 
 
-def test_names_are_left_out_where_there_is_no_room(jump: rl.Trajectory) -> None:
+def test_event_names_are_left_out_if_there_is_no_room(jump: rl.Trajectory) -> None:
     low = rl.plot_energy(jump, ax=Figure(figsize=(3.2, 1.0)).add_subplot()).ax
     assert event_names(low) == [] and len(event_names(rl.plot_energy(jump, ax=new_axes()).ax)) == 3
 
 
-def test_only_events_among_the_samples_are_marked(jump: rl.Trajectory) -> None:
+def test_only_events_within_the_sampled_time_are_marked(jump: rl.Trajectory) -> None:
     slip, lift_off, impact = (event.t for event in jump.events)
     part = jump.sol(np.linspace((slip + lift_off) / 2, (lift_off + impact) / 2, 50))
     shown = rl.plot_energy(part, ax=new_axes())
@@ -161,13 +161,13 @@ def test_each_of_several_motions_has_a_row_of_shading(jump: rl.Trajectory) -> No
     assert [len(times) for times in lines_of(shown.marks)] == [3, 1] * 2
 
 
-def test_rolling_and_rest_have_no_shading() -> None:
-    for scene in (rl.scenes.report, rl.Scene(2.0, 1.0)):  # a rolling and a resting body
+def test_a_body_that_keeps_rolling_or_resting_has_no_shading() -> None:
+    for scene in (rl.scenes.report, rl.Scene(2.0, 1.0)):
         shown = rl.plot_forces(rl.simulate(scene, 2.0), ax=two_axes())
         assert shown.marks == () and legend_of(shown.axes[0]) == ["normal", "friction"]
 
 
-def test_forces_are_zero_in_flight_and_at_their_limit_in_slides(motion: rl.Trajectory) -> None:
+def test_forces_vanish_in_flight_and_friction_is_mu_n_in_sliding(motion: rl.Trajectory) -> None:
     shown = rl.plot_forces(motion, ax=two_axes())
     normal, friction = (data(line)[1] for line in (shown.normal[0], shown.friction[0]))
     motion = seen(motion, shown.normal[0])
@@ -192,12 +192,11 @@ def test_constraints_are_shown_only_where_the_ground_enforces_them(motion: rl.Tr
         assert np.array_equal(np.isnan(values[name]), flying | sliding)
     for name in ("f3", "f4", "df3/dt", "df4/dt"):
         assert np.all(np.isfinite(values[name]))
-    # the constraints hold to within some hundreds of roundings
+    # the constraints hold to within a few hundred roundings
     assert max(float(np.nanmax(value, initial=0.0)) for value in values.values()) < 1e-13
 
 
 def test_energy_lost_to_the_ground_does_not_count_as_an_error(motion: rl.Trajectory) -> None:
-    """The errors are a few roundings of the energy; the work of friction is not an error."""
     (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
     error, slides = data(line)[1], seen(motion, line).mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(error), slides & (motion.scene.friction > 0))
@@ -206,7 +205,7 @@ def test_energy_lost_to_the_ground_does_not_count_as_an_error(motion: rl.Traject
         assert motion.energy[0] - motion.energy[-1] > 1e-3 * motion.energy[0]
 
 
-def test_a_loss_in_elastic_impacts_counts_as_an_error() -> None:
+def test_energy_lost_in_elastic_impacts_counts_as_an_error() -> None:
     dull = rl.simulate(SCENES["bounce"].replace(friction=0.0, restitution=0.9), 6.0)
     elastic = dataclasses.replace(dull, scene=dull.scene.replace(restitution=1.0))
     for motion, least, most in ((dull, 0.0, 32 * EPS), (elastic, 0.19, 1.0)):  # 1 - 0.9^2 = 0.19
@@ -321,7 +320,7 @@ def test_every_frame_shows_the_mode_of_the_body(motion: rl.Trajectory) -> None:
             assert slipping == pytest.approx(contact)
             assert strip.slip.get_marker() == (">" if slip[i] > 0 else "<")
         shadow = data(strip.shadow)[0]
-        if flies:  # as wide as the body, whose ends 4000 points miss by 1e-6 of its size
+        if flies:  # as wide as the body; `points` miss its ends by up to 1e-6 of its size
             ends = [points[:, 0].min(), points[:, 0].max()]
             assert shadow == pytest.approx(ends, abs=4e-6)
         assert len(shadow) == (2 if flies else 0)
@@ -331,7 +330,7 @@ def test_every_frame_shows_the_mode_of_the_body(motion: rl.Trajectory) -> None:
         assert np.array_equal(skidded, strip.motion.mode[: i + 1] == rl.Mode.SLIDING)
 
 
-def test_the_slip_mark_lies_along_the_slope() -> None:
+def test_the_slip_mark_points_down_the_slope() -> None:
     sliding = rl.simulate(rl.Scene(2.0, 1.0, slope=0.5, x_dot=4.0, omega=0.0, friction=0.2), 0.1)
     (strip,) = rl.animate(sliding).strips
     # matplotlib gives no public access to the shape of a marker
@@ -342,7 +341,7 @@ def test_the_slip_mark_lies_along_the_slope() -> None:
     assert pointing / np.linalg.norm(pointing) == pytest.approx(downhill, abs=1e-12)
 
 
-def test_contact_slip_and_flight_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
+def test_contact_slip_and_flight_can_be_told_apart_in_greyscale(jump: rl.Trajectory) -> None:
     """The marks are white, black and a grey between these. A difference of a fifth of the scale is
     clearly visible."""
     (strip,) = rl.animate(jump).strips
@@ -372,7 +371,7 @@ def test_losses_are_split_into_rolling_sliding_and_impacts() -> None:
     assert np.abs(data(plain.lost[0][0])[1]).max() < 1e-12 * motion.energy[0]
 
 
-def test_rolling_with_resistance_shows_its_loss_and_no_error_of_energy() -> None:
+def test_rolling_with_resistance_shows_its_loss_and_no_energy_error() -> None:
     rocks = rl.Scene(2.0, 1.0, theta=0.5, friction=1.0, rolling_resistance=0.02)
     motion = rl.simulate(rocks, 40.0)
     shown = motion.plot(figure=Figure())

@@ -48,7 +48,7 @@ def test_an_empty_picture_is_detected() -> None:
         assert shows_something(figure_of(ax)) == shown
 
 
-def test_legends_titles_and_labels_stay_in_their_boxes_without_a_layout() -> None:
+def test_legends_titles_and_labels_stay_in_their_boxes_without_a_layout_engine() -> None:
     axes = np.ravel(np.array(Figure().subplots(2, 2)))
     jump, bounce = rl.simulate(rl.scenes.jump, 3.0), rl.simulate(rl.scenes.bounce, 20.0)
     pictures: list[Any] = [rl.plot_forces, rl.plot_strobe, rl.plot_paths, rl.plot_energy]

@@ -65,7 +65,7 @@ def constant(values: Array) -> float:
 @pairs
 @pytest.mark.parametrize("swapped", [False, True], ids=["long axis a", "long axis b"])
 def test_cells_agree_with_classify_at_their_centres(x: str, y: str, swapped: bool) -> None:
-    """`classify` is called for single discs, also with the axes swapped."""
+    """`classify` is called for one body at a time, also with its axes swapped."""
     shown = phase_map(x, y, b=0.7, gravity=3.7)
     columns, rows = (middles_of(n, e) for n, e in zip((x, y), edges_of(shown), strict=True))
     codes = codes_of(shown)
@@ -102,7 +102,7 @@ def test_the_legend_names_only_outcomes_on_the_map(
         assert to_hex(colour_of(shown, outcome)) == to_hex(entry.get_facecolor())
 
 
-def test_regions_can_be_told_apart_in_grey() -> None:
+def test_regions_can_be_told_apart_in_greyscale() -> None:
     shown = phase_map()
     regions = [o for o in rl.Outcome if o not in (rl.Outcome.RESTS, rl.Outcome.EDGE)]
     colours = [to_rgb(colour_of(shown, outcome)) for outcome in regions]
@@ -112,7 +112,7 @@ def test_regions_can_be_told_apart_in_grey() -> None:
 
 
 @pairs
-def test_every_pair_of_axes_has_the_right_marks(x: str, y: str) -> None:
+def test_each_pair_of_axes_marks_exactly_the_thresholds_it_can_show(x: str, y: str) -> None:
     shown = phase_map(x, y)
     expected = LEVEL_MARKS if {x, y} & {"energy", "speed"} else set()
     expected = expected | ({"Painlevé"} if "friction" in (x, y) else set())
@@ -125,7 +125,7 @@ def test_every_pair_of_axes_has_the_right_marks(x: str, y: str) -> None:
         assert line.get_data()[0] == pytest.approx(swapped.marks[key].get_data()[1], nan_ok=True)
 
 
-def test_the_two_critical_ratios_are_marked() -> None:
+def test_the_critical_aspect_ratios_are_marked() -> None:
     for friction in (math.inf, 0.4):
         shown = phase_map(friction=friction)
         assert constant(at(shown, "tip")[0]) == pytest.approx(math.sqrt(3), rel=1e-15)
@@ -144,7 +144,7 @@ def test_painleves_critical_friction_is_marked() -> None:
         assert friction == rl.thresholds(aspect, 1.0).painleve_friction
 
 
-def test_curves_over_the_aspect_agree_with_thresholds() -> None:
+def test_curves_over_the_aspect_ratio_agree_with_thresholds() -> None:
     shown = phase_map(friction=0.5)
     assert constant(at(shown, "separatrix")[1]) == 1
     contact, flight = at(shown, "contact loss"), at(shown, "lift-off")
@@ -166,8 +166,8 @@ def test_speeds_plotted_against_friction_agree_with_thresholds() -> None:
     assert shown.ax.get_xlabel().endswith("(at a/b = 3, b = 2 m)")
 
 
-def test_colours_change_at_the_lines() -> None:
-    """Rolling ends at N = 0; the separatrix divides rocking from rolling over."""
+def test_colours_change_at_the_marked_lines() -> None:
+    """Rolling ends where N = 0; the separatrix divides rocking from rolling over."""
     shown = phase_map(resolution=400)
     codes = codes_of(shown)
     aspects, energies = (
@@ -192,7 +192,7 @@ def test_only_thresholds_in_view_are_marked() -> None:
 
 @pairs
 @pytest.mark.parametrize("size", [(6.4, 4.4), (3.2, 2.6)], ids=["640 px", "320 px"])
-def test_names_lie_in_the_axes_without_overlap(x: str, y: str, size: tuple[float, float]) -> None:
+def test_names_fit_in_the_axes_without_overlap(x: str, y: str, size: tuple[float, float]) -> None:
     shown = plot_phase_map(x, y, ax=new_axes(*size), resolution=COARSE)
     FigureCanvasAgg(figure_of(shown.ax)).draw()
     window = shown.ax.get_window_extent()
@@ -209,7 +209,7 @@ def test_names_lie_in_the_axes_without_overlap(x: str, y: str, size: tuple[float
     assert legend.x0 >= 0 and legend.x1 <= shown.ax.figure.bbox.x1 + 1
 
 
-def test_no_name_is_written_where_there_is_too_little_room() -> None:
+def test_a_tiny_map_omits_the_names_that_do_not_fit() -> None:
     tiny = plot_phase_map(ax=new_axes(0.9, 0.8), resolution=COARSE)
     assert len(tiny.marks) == 5 and len(tiny.names) <= 2
 
@@ -250,7 +250,7 @@ def test_a_map_may_have_any_resolution(resolution: int) -> None:
         assert codes_of(shown)[0, 0] == rl.classify(a=2.0, b=1.0, omega=middle, friction=1.0)
 
 
-def test_a_map_without_axes_opens_a_figure_with_rasterized_cells() -> None:
+def test_a_map_without_given_axes_opens_a_figure_with_rasterized_cells() -> None:
     shown = rl.plot_phase_map(resolution=4)
     assert shown.cells.get_rasterized() and shown.ax.figure is plt.gcf()
     assert shown.ax.get_xlabel() == "a/b   (at μ = ∞)"

@@ -18,7 +18,7 @@ from rolling_ellipse._pictures import ground as drawing
 from rolling_ellipse._pictures import sampling
 
 own_samples = pytest.mark.filterwarnings("ignore:the samples of a trajectory are not those")
-OVER_TIME: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {  # quantity of each curve
+OVER_TIME: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {  # quantity shown by each curve
     "forces": (
         lambda motion: rl.plot_forces(motion, ax=two_axes()),
         {"normal": "normal_force", "friction": "friction_force", "needed": "friction_needed"},
@@ -62,7 +62,7 @@ def test_each_quantity_has_a_panel_with_all_motions(several: list[rl.Trajectory]
             assert np.array_equal(data(line)[1], getattr(seen(motion, line), name))
 
 
-def test_lengths_of_a_small_body_are_labelled_in_its_unit() -> None:
+def test_lengths_of_a_small_body_are_labelled_in_millimetres() -> None:
     coin = rl.simulate(rl.Scene(0.012, 0.01, omega=9.0), 1.0)
     ax = rl.plot_curves(coin, "contact_x", ax=new_axes()).ax
     assert ax.get_ylabel() == "contact [mm]" and ax.yaxis.get_major_formatter()(0.01, 0) == "10"
@@ -84,8 +84,8 @@ def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
     return other
 
 
-def test_rounding_errors_are_small_on_their_axis(report: rl.Trajectory) -> None:
-    """The axis ends at 1e-12, ten times some hundreds of roundings."""
+def test_rounding_errors_do_not_fill_the_axis_of_the_energy_error(report: rl.Trajectory) -> None:
+    """The axis ends at 1e-12, and a few hundred roundings are 1e-13."""
     (ax,) = rl.plot_energy(report, ax=new_axes(), kind="error").axes
     assert ax.get_ylim() == pytest.approx((1e-17, 1e-12))
 
@@ -103,7 +103,7 @@ def test_errors_of_constraints_are_dimensionless(report: rl.Trajectory) -> None:
 
 
 @own_samples
-def test_several_motions_show_the_worst_of_their_constraints(report: rl.Trajectory) -> None:
+def test_several_motions_show_their_worst_constraint_errors(report: rl.Trajectory) -> None:
     motions = [report, missing(report, f2=1e-6, f3=1e-3), missing(report, f1=1e-2, f4=1e-5)]
     positions, velocities = rl.plot_constraints(motions, ax=two_axes()).lines
     largest = [[data(line)[1].max() for line in panel] for panel in (positions, velocities)]
@@ -130,7 +130,7 @@ def test_several_motions_show_the_errors_in_their_energies(several: list[rl.Traj
     assert shown.total == shown.kinetic == shown.potential == ()
     assert shown.ax.get_yscale() == "log"
     for line, motion in zip(shown.error, several, strict=True):
-        # on level ground both energies, counted from z = 0, are >= 0, so their sum is the scale
+        # kinetic and potential energy are both >= 0 on level ground, so their sum is the scale
         energy = seen(motion, line).energy
         expected = np.abs(energy - energy[0]) / energy.max()
         assert data(line)[1] == pytest.approx(expected, rel=1e-12, abs=1e-15)
@@ -209,7 +209,7 @@ def test_paths_of_several_motions_share_one_view(report: rl.Trajectory) -> None:
         x, z = data(line)
         assert left < x.min() and x.max() < right and bottom < z.min() and z.max() < top
     window = shown.ax.get_window_extent()
-    # matplotlib keeps limits that agree within 0.5 %
+    # matplotlib does not adjust scales that agree to 0.5 %
     assert window.width / (right - left) == pytest.approx(window.height / (top - bottom), rel=5e-3)
     earth = shown.ground.get_xy()
     assert earth[:, 0].min() < left and earth[:, 0].max() > right
@@ -247,11 +247,11 @@ def test_the_separatrix_lies_between_rocking_and_rolling_over(a: float, b: float
     shown = rl.plot_phase(rl.simulate(rl.Scene(a, b, omega=1.0), 3.0), ax=new_axes())
     theta, omega = data(shown.separatrices[0])
     flat = 0.0 if a > b else math.pi / 2
-    # nearer to a tip, the rounding of max(a, b) - h is not small compared with this difference
+    # closer to a tip, max(a, b) - h is so small that its rounding errors matter
     ours = (np.abs(theta - flat) < 1.5) & (omega != 0)
     assert np.count_nonzero(ours) > 800
     theta, omega = theta[ours], omega[ours]
-    # a millionth off the separatrix, a motion nears the tip in about ln(1e6)/lambda = 8 s
+    # a millionth off the separatrix, a body stays near its tip for about ln(1e6)/lambda = 8 s
     for factor, over in ((1 + 1e-6, True), (1 - 1e-6, False)):
         later, _, _ = rl.flow(30.0, a=a, b=b, theta=theta, omega=factor * omega)
         assert np.all((np.abs(later - flat) > math.pi / 2) == over)
@@ -268,7 +268,7 @@ def test_the_separatrix_passes_through_the_tips(report: rl.Trajectory) -> None:
     assert omega.max() == pytest.approx(rl.thresholds(2.0, 1.0).roll_over_speed, rel=1e-12)
 
 
-def test_the_separatrix_keeps_the_spike_of_a_thin_body() -> None:
+def test_the_separatrix_shows_the_spike_of_a_thin_body() -> None:
     shown = rl.plot_phase(rl.simulate(rl.Scene(1.0, 1e-3, theta=0.3), 1.0), ax=new_axes())
     _, omega = data(shown.separatrices[0])
     peak = rl.thresholds(1.0, 1e-3).roll_over_speed
@@ -277,7 +277,7 @@ def test_the_separatrix_keeps_the_spike_of_a_thin_body() -> None:
     assert np.max(np.abs(np.diff(omega))) < 0.1 * peak
 
 
-def test_only_level_bodies_that_are_not_round_have_a_separatrix(report: rl.Trajectory) -> None:
+def test_only_noncircular_bodies_on_level_ground_have_a_separatrix(report: rl.Trajectory) -> None:
     for scene in (rl.scenes.circle, rl.scenes.slope):
         shown = rl.plot_phase(rl.simulate(scene, 1.0), ax=new_axes())
         assert shown.separatrices == () and shown.equilibria == ()
@@ -340,8 +340,8 @@ def test_strobe_bodies_touch_the_ground_at_equally_spaced_times(trajectory: rl.T
         assert centre_of(body) == (at.x[i], at.z[i])
         assert (body.width, body.height) == (2 * trajectory.scene.a, 2 * trajectory.scene.b)
         lowest_x, lowest_z = support(body)
-        # angles up to 100 rad, in degrees, are exact to 1e-14 rad; this moves the lowest point by
-        # up to size or rho times as much, and x adds its own rounding
+        # an angle of up to 100 rad, stored in degrees, is accurate to 1e-14 rad; its error moves
+        # the lowest point by up to size or rho times as much, and x has its own rounding
         assert abs(lowest_z) <= 1e-12 * size
         rho = (trajectory.scene.a * trajectory.scene.b) ** 2 / at.z[i] ** 3
         assert abs(lowest_x - contact_x[i]) <= 1e-13 * (size + rho + abs(at.x[i]))
@@ -354,7 +354,7 @@ def test_strobe_bodies_darken_evenly_from_early_to_late(report: rl.Trajectory) -
     assert np.all(steps > 0.1) and steps.max() < 3 * steps.min()
 
 
-def test_the_strobe_hand_ends_at_the_end_of_semi_axis_a(trajectory: rl.Trajectory) -> None:
+def test_the_strobe_hand_points_to_the_end_of_semi_axis_a(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     for body, hand in zip(shown.bodies, shown.hands, strict=True):
         end = np.asarray(hand.get_xydata())[1]
@@ -377,7 +377,7 @@ def test_the_strobe_stops_a_long_roll_after_three_turns() -> None:
 def test_the_strobe_stops_rocking_after_one_swing(start: rl.Scene) -> None:
     shown = rl.plot_strobe(rl.simulate(start, 50.0), ax=new_axes(), count=600)
     angles = [body.angle for body in shown.bodies]
-    # in one direction only, so that no outline covers another; the body turns back at both ends
+    # the body turns back at both ends of one swing, in which no outline covers another
     assert angles[-1] == pytest.approx(max(angles), abs=0.05)
     assert max(angles) == pytest.approx(-min(angles), abs=0.05)
     assert (angles[0] == min(angles)) == (start.omega == 0)
@@ -399,7 +399,7 @@ def test_the_strobe_view_contains_every_body_at_equal_scales(trajectory: rl.Traj
         assert bottom < points[:, 1].min() and points[:, 1].max() < top
     window = shown.ax.get_window_extent()
     across, up = window.width / (right - left), window.height / (top - bottom)
-    # tolerance of a pixel of the width: the layout may move an edge by part of a pixel afterwards
+    # one pixel of tolerance: the layout may move an edge by part of a pixel afterwards
     assert across == pytest.approx(up, rel=1 / window.width)
 
 
@@ -454,7 +454,7 @@ def test_the_plotted_error_is_the_difference_from_the_exact_motion() -> None:
     shown = rl.plot_error([coarse, exact], ax=new_axes())
     t, error = data(shown.errors[0])
     theta, _, _ = rl.flow(t, a=2.0, b=1.0, theta=0.0, omega=3.2)
-    # two exact methods differ by some ulp of an angle of 10 rad
+    # two exact methods differ by a few ulps of an angle of 10 rad
     assert error == pytest.approx(np.abs(coarse.sol(t).theta - theta), abs=1e-14)
     assert 1e-7 < error.max() < 1e-2 and shown.ax.get_yscale() == "log"
     assert shown.ax.get_ylabel() == "error of θ [rad]"

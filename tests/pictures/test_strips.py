@@ -52,7 +52,7 @@ def test_every_strip_shows_its_motion_at_the_clock_time(motions: list[rl.Traject
         animation.draw(i)
         assert animation.clock.get_text() == f"t = {i / 10:.1f} s"
         for strip, motion in zip(animation.strips, motions, strict=True):
-            at = motion.sol(i / 10)  # a single time is rounded differently than many times
+            at = motion.sol(i / 10)  # a single time is rounded differently from an array of times
             assert centre_of(strip.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
             assert strip.body.angle == pytest.approx(-math.degrees(at.theta[0]), rel=1e-14)
             assert (strip.body.width, strip.body.height) == (2 * motion.scene.a, 2 * motion.scene.b)
@@ -85,7 +85,7 @@ def test_the_strips_share_one_scale_and_fill_the_picture(motions: list[rl.Trajec
         across = np.ptp(strip.ax.get_xlim()) / width
         upwards = np.ptp(strip.ax.get_ylim()) / (box.height * height)
         assert across == pytest.approx(np.ptp(animation.strips[0].ax.get_xlim()) / width, rel=1e-14)
-        assert upwards == pytest.approx(across, rel=0.02)  # the height is rounded up to even pixels
+        assert upwards == pytest.approx(across, rel=0.02)  # even number of pixels
 
 
 @pytest.mark.parametrize(
@@ -192,7 +192,7 @@ def test_strips_are_drawn_into_a_given_figure() -> None:
             assert left < points[:, 0].min() and points[:, 0].max() < right
 
 
-def test_the_layout_setting_of_the_user_is_left_alone() -> None:
+def test_animations_ignore_the_constrained_layout_setting() -> None:
     with matplotlib.rc_context({"figure.constrained_layout.use": True}):
         animation = rl.animate(rl.simulate(rl.scenes.rocking, 0.1))  # any warning is an error
     assert shows_something(animation.figure)

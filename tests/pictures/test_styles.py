@@ -1,4 +1,4 @@
-"""Pictures follow the style in force and accept matplotlib's usual arguments."""
+"""Pictures follow the active style and accept matplotlib's usual arguments."""
 
 import itertools
 from collections.abc import Iterator
@@ -28,13 +28,13 @@ def defaults() -> Iterator[None]:
 
 
 def contrast(one: Any, other: Any) -> float:
-    """Ratio of luminances from 1 to 21 (relative luminance of WCAG 2.1)."""
+    """Contrast ratio of two colours, from 1 to 21, as WCAG 2.1 defines it."""
     levels = luminance(one), luminance(other)
     return (max(levels) + 0.05) / (min(levels) + 0.05)
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_curves_differ_from_the_background(
+def test_curves_stand_out_from_the_background(
     picture: Any, several: list[rl.Trajectory], style: str
 ) -> None:
     with plt.style.context(style):
@@ -141,7 +141,7 @@ def test_the_figure_size_of_the_style_is_the_default() -> None:
         assert sizes[1] == (5.0, 2.5) != sizes[0]
 
 
-def test_a_figure_or_subfigure_is_laid_out() -> None:
+def test_the_panels_of_a_figure_or_subfigure_do_not_overlap() -> None:
     motion = rl.simulate(rl.scenes.report, 2.0)
     bare = Figure(figsize=(9, 8))
     whole = Figure(figsize=(14, 8), layout="constrained")

@@ -31,8 +31,8 @@ def run(name: str, error: float, time: float, **how: Any) -> Run:
 
 
 def made(count: int, best: float = 1e-13, kind: str = "ladders") -> WorkPrecision:
-    """A race of `count` contenders: "flow" with one answer, own methods and peers of increasing
-    order and cost."""
+    """A race of `count` contenders: "flow" with a single answer, and own methods and peers of
+    various orders and costs."""
     runs = [run("flow", best / 10, 2e-6, method="exact", setting=math.nan)]
     for i in range(1, count):
         own = i % 4 == 2
@@ -63,12 +63,11 @@ def chart() -> Any:
 
 
 def height(line: Any, error: float) -> float:
-    """Height of a drawn front at an error."""
     x, y = line.get_data()
     return float(next(value for at, value in zip(x, y, strict=True) if at <= error))
 
 
-def test_fronts_are_the_least_times_of_each_camp_and_factors_their_ratios() -> None:
+def test_fronts_show_the_least_times_of_each_camp_and_factors_their_ratios() -> None:
     chart: Any = FOUND.plot(ax=Figure(figsize=(8, 5)).add_subplot())
     for decade in DECADES[:11]:
         least = FOUND.least(decade)
@@ -104,13 +103,13 @@ def test_highlights_are_names_or_tags_of_the_race() -> None:
     assert camp() == OWN == camp(highlight="own") == camp(highlight=["own"])
     assert camp(highlight=["flow", "Boost method 7"]) == {"flow", "Boost method 7"}
     alone = replace(FOUND, runs=tuple(each for each in FOUND.runs if each.name in OWN))
-    assert camp(found=alone) == {"flow"}  # without peers, the method that is ahead most
+    assert camp(found=alone) == {"flow"}  # without peers, the exact methods
     with pytest.raises(ValueError, match=r"highlight must be among .*flow.*own.*peer.*'nobody'"):
         camp(highlight="nobody")
     assert camp(tags="own", highlight="method2") == {"method2"}
 
 
-def test_errors_range_from_ten_to_the_attainable_limit_without_piling_up(chart: Any) -> None:
+def test_errors_are_drawn_from_ten_down_to_the_attainable_limit(chart: Any) -> None:
     first, last = chart.ax.get_xlim()
     assert first == 10 and LIMIT / 10 < last < LIMIT == chart.limit.get_xdata()[0]
     for line in chart.lines.values():
@@ -120,7 +119,7 @@ def test_errors_range_from_ten_to_the_attainable_limit_without_piling_up(chart: 
     assert {"10 µs", "1 ms"} <= {tick.get_text() for tick in chart.ax.get_yticklabels()}
 
 
-def test_camps_differ_in_grey(chart: Any) -> None:
+def test_camps_can_be_told_apart_in_greyscale(chart: Any) -> None:
     def grey(line: Any) -> float:
         return float(np.dot(to_rgb(line.get_color()), (0.299, 0.587, 0.114)))
 
@@ -133,7 +132,7 @@ def test_camps_differ_in_grey(chart: Any) -> None:
 @pytest.mark.parametrize("found", READ.values(), ids=READ)
 @pytest.mark.parametrize("width", [3.4, 5.0, 8.0, 12.0])
 def test_no_text_overlaps_another(width: float, found: WorkPrecision) -> None:
-    """The widths are those of a column, of 500 px, of 800 px and of a slide."""
+    """The widths are those of a printed column, of 500 and 800 pixels, and of a slide."""
     with plt.rc_context({"figure.figsize": (width, 0.7 * width), "figure.dpi": 100}):
         chart: Any = found.plot()
     figure = chart.ax.figure
@@ -162,7 +161,7 @@ FAILED = replace(run("method2", 1e-3, 1.0), **LOST, reason="singular")
 LACKING = replace(FOUND, runs=(*FOUND.runs, FAILED))
 
 
-def test_the_table_of_gaps_is_drawn_below_where_there_is_room() -> None:
+def test_the_table_of_gaps_is_drawn_below_the_chart_if_there_is_room() -> None:
     table = str(LACKING.gaps())
     assert table.splitlines()[1] == "method2       1e-03       FAILED, singular"
     for width, drawn in ((8.0, True), (3.4, False)):
@@ -181,7 +180,7 @@ def test_a_chart_without_any_result_still_names_every_failure() -> None:
     chart.ax.figure.draw_without_rendering()
 
 
-def test_each_small_multiple_shows_one_library_on_the_same_axes() -> None:
+def test_small_multiples_show_one_library_each_and_share_their_limits() -> None:
     chart: Any = FOUND.plot(by="library")
     titles = [ax.get_title(loc="left") for ax in chart.axes]
     assert sorted(titles) == sorted([*LIBRARIES, "rolling_ellipse"])

@@ -12,8 +12,8 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
-    """A browser for one file of tests, because the event loop of its driver would disturb the
-    kernels of notebooks in other files.
+    """A browser for a single test file, because the event loop of its driver would disturb the
+    notebook kernels of other files.
     """
     if CHROMIUM is None:
         pytest.skip("there is no chromium (apt-get install chromium)")
@@ -26,8 +26,7 @@ def chromium() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def blank(chromium: Any) -> Callable[..., Any]:
-    """A page without a network for the given options; tests share pages, since opening one is
-    slow."""
+    """An offline page with the given options. Tests share pages, because opening one is slow."""
     pages: dict[str, Any] = {}
 
     def page_for(**options: Any) -> Any:
@@ -44,7 +43,7 @@ def blank(chromium: Any) -> Callable[..., Any]:
 def opened(blank: Callable[..., Any], tmp_path: Path) -> Iterator[Callable[..., Any]]:
     """Open HTML as a file; no page may request a network address or report an error.
 
-    Pages of a test with equal options replace each other.
+    A page replaces an earlier one of the same test if their options are equal.
     """
     used: list[tuple[Any, dict[str, Any]]] = []
     complaints: list[str] = []

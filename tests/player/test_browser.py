@@ -56,7 +56,7 @@ def drawn(page: Page) -> np.ndarray:
 
 
 def expected_centre(page: Page, motion: rl.Trajectory, t: float) -> tuple[float, float]:
-    """Pixel position of the exact centre in the window of a fixed camera."""
+    """Pixel position of the exact centre of the body."""
     (left, right, _, top), width = given(
         page, "player => [player.film.strips[0].window, player.box.clientWidth]"
     )
@@ -72,9 +72,9 @@ def expected_centre(page: Page, motion: rl.Trajectory, t: float) -> tuple[float,
 
 
 def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
-    """Centre of the body: mean position of its edge, seen from a nearby point in many directions.
+    """Centre of the drawn body, from the distances of its edge in many directions from a point.
 
-    The tip and the contact are drawn on the edge too, but lie in few of the directions.
+    The marks of the tip and the contact on the edge spoil few of the directions.
     """
     picture, ink = drawn(page), LIGHT["ink"]
     reach = given(page, "p => 1.05 * p.views[0].scale * Math.max(p.film.strips[0].a, "
@@ -88,8 +88,8 @@ def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
         if None not in ends:
             offsets.append((ends[0] - ends[1]) / 2)  # type: ignore[operator]
             directions.append(way)
-    # each offset is about the component of the centre's offset along its direction; solve by least
-    # squares, and leave out the worst tenth
+    # each offset is about the component of the centre's shift along its direction; find the shift
+    # by least squares, each time without the worst tenth of the directions
     offsets_, ways = np.array(offsets), np.array(directions)
     for _ in range(3):
         shift, *_ = np.linalg.lstsq(ways, offsets_, rcond=None)
@@ -115,7 +115,7 @@ def edge_distance(
 # -------------------------------------------------------------------------------------- films
 
 
-def test_a_film_plays_by_itself_from_a_file(opened: Opened) -> None:
+def test_a_film_opened_from_a_file_plays_by_itself(opened: Opened) -> None:
     page = opened(film(rl.scenes.report))
     page.wait_for_function(f"{HOST}.player.t > 0.3")
     told(page, "player => player.pause()")
@@ -183,7 +183,7 @@ def test_players_on_one_page_do_not_interfere(opened: Opened) -> None:
     assert times == [0, 1.5, 0]
 
 
-def test_keys_work_only_where_the_player_has_the_focus(opened: Opened) -> None:
+def test_keys_work_only_while_the_player_has_the_focus(opened: Opened) -> None:
     page = opened(film(rl.scenes.report), reduced_motion="reduce")
     page.wait_for_function(f"{HOST}.dataset.time === '0'")
     page.keyboard.press("End")
@@ -204,7 +204,7 @@ def test_keys_work_only_where_the_player_has_the_focus(opened: Opened) -> None:
     page.keyboard.press("Space")
     assert not told(page, "player => player.playing")
     page.keyboard.press("d")
-    assert page.title() == "An ellipse in motion"  # a key must not reach a notebook around it
+    assert page.title() == "An ellipse in motion"  # keys must not reach a surrounding notebook
     assert page.locator("[data-lm-suppress-shortcuts]").count() == 1
     page.keyboard.press("Home")
     assert told(page, "p => p.canvas.getAttribute('aria-label')") == (
@@ -251,7 +251,7 @@ def test_the_canvas_is_as_dark_as_the_page(
 
 
 @pytest.mark.parametrize("dots", [1, 2, 3])
-def test_a_film_is_sharp_and_takes_the_given_width(opened: Opened, dots: int) -> None:
+def test_a_film_is_sharp_and_as_wide_as_its_page(opened: Opened, dots: int) -> None:
     page = opened(film(rl.scenes.report), device_scale_factor=dots, reduced_motion="reduce")
     widths = []
     for width in (1000, 500):
@@ -261,7 +261,7 @@ def test_a_film_is_sharp_and_takes_the_given_width(opened: Opened, dots: int) ->
     assert widths == [968, 468]
 
 
-def test_a_picture_is_shown_without_scripts(opened: Opened) -> None:
+def test_a_picture_is_shown_if_scripts_are_disabled(opened: Opened) -> None:
     page = opened(film(rl.scenes.report), java_script_enabled=False)
     image = page.locator("img")
     assert image.is_visible() and image.bounding_box()["width"] > 900
@@ -298,7 +298,7 @@ def drag(page: Page, by: tuple[float, float], steps: int) -> None:
 
 @pytest.mark.parametrize("name", ["report", "slope", "drop", "jump"])
 def test_a_drag_moves_the_blow_and_shows_its_effect(opened: Opened, name: str) -> None:
-    """Positions, turns and forces are drawn to within a pixel; a plot has 540 by 168 pixels."""
+    """Positions, angles and forces are accurate to a pixel; a plot has 540 by 168 pixels."""
     scene = SCENES[name]
     explorer = rl.explore(scene)
     page = opened(document("", explorer._repr_html_()), reduced_motion="reduce")
@@ -321,7 +321,7 @@ def test_a_drag_moves_the_blow_and_shows_its_effect(opened: Opened, name: str) -
     curves = told(page, "player => player.curves.map(curve => curve.points)")
     for points, force in zip(curves, (at.normal_force, at.friction_force), strict=True):
         true, (t, seen) = np.clip(force / weight, -3, 5), np.array(points).T
-        near = [np.roll(true, k)[20:-20] for k in range(-20, 21)]  # within a pixel of time
+        near = [np.roll(true, k)[20:-20] for k in range(-20, 21)]  # up to a pixel earlier or later
         seen = np.interp(at.t, t, np.clip(seen, -3, 5))[20:-20]
         over = np.maximum(seen - np.max(near, axis=0), np.min(near, axis=0) - seen)
         assert over.max() * 168 / np.ptp([-0.5, 1.5, *true]) < 1
@@ -347,7 +347,7 @@ def test_in_a_wide_cell_the_map_and_the_curves_are_beside_the_film(opened: Opene
 def test_the_map_the_sliders_and_the_text_follow_the_blow(opened: Opened) -> None:
     page = opened(document("", rl.explore(rl.scenes.report)._repr_html_()))
     box = page.locator(".map canvas").bounding_box()
-    page.mouse.click(box["x"] + 52 + 3, box["y"] + 10 + 3)  # the corner: far left, strongest
+    page.mouse.click(box["x"] + 52 + 3, box["y"] + 10 + 3)  # leftmost and strongest
     page.wait_for_function(f"{HOST}.player.t > 0.1")  # it plays after the release
     d, F = blow(page)
     assert (d, F) == pytest.approx((-2.0, 99.7), rel=0.02)
@@ -398,7 +398,7 @@ def test_keys_move_the_blow_without_reaching_the_page(
     assert (t == 0) == (part != ".player")
 
 
-def test_the_reason_is_announced_when_it_changes(opened: Opened) -> None:
+def test_the_reason_is_announced_only_when_it_changes(opened: Opened) -> None:
     page = opened(rl.explore(rl.scenes.report, t_end=1.0, language="de").to_html())
     page.locator(".hard").press("End")
     blow(page)

@@ -26,7 +26,7 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_blows_hit_the_body_and_the_blow_of_the_scene_comes_first(name: str) -> None:
+def test_blows_hit_the_body_and_the_blow_of_the_scene_comes_first(name: str) -> None:
     scene = SCENES[name]
     place, strength = blows.axes(scene)
     reach = rl.geometry.support(scene.theta + math.pi / 2, a=scene.a, b=scene.b)
@@ -65,7 +65,7 @@ def test_each_language_has_a_complete_table_of_texts() -> None:
             for each in ("en", "de")
         )
         assert list(english) == list(german)
-        for key, text in english.items():  # both state the same numbers
+        for key, text in english.items():  # both have the same placeholders
             assert sorted(BRACES.findall(text)) == sorted(BRACES.findall(german[key])), key
 
 

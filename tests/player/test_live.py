@@ -74,10 +74,8 @@ def require_equal(motion: rl.Trajectory, found: dict[str, Any]) -> None:
     assert [t for t, *_ in found["events"]] == pytest.approx(times, rel=1e-10)
 
 
-def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
-    tmp_path: Path,
-) -> None:
-    """The bounds allow for roundings of another C library, magnified by a few bounces."""
+def test_webassembly_agrees_with_python_on_300_scenes(tmp_path: Path) -> None:
+    """The bounds allow for the rounding errors of another C library, which bounces magnify."""
     how, times = replace(DEFAULTS, max_steps=20_000, max_events=200), np.linspace(0.0, 1.5, 31)
     scenes = [*random_scenes(220, 35), *random_scenes(60, 36, struck=1.0)]
     scenes += [
@@ -106,9 +104,9 @@ def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
                     "friction", "blow_needs", "stopped", "thrown", "slides_off"}, keys  # fmt: skip
 
 
-def test_webassembly_gives_blows_during_200_motions_as_python_does(tmp_path: Path) -> None:
-    """Every other body is struck just after its first event, which roundings of another C library
-    may delay. The sentences describe the motion after the last blow.
+def test_webassembly_agrees_with_python_on_motions_with_later_blows(tmp_path: Path) -> None:
+    """Every other body is struck 1 ns after its first event, because the rounding of another C
+    library may delay the event.
     """
     how = replace(DEFAULTS, model="contact", max_steps=20_000, max_events=200)
     end, rng, motions, struck = 1.5, np.random.default_rng(39), [], []
@@ -158,7 +156,7 @@ def test_the_wasm_file_is_small_and_matches_its_script(tmp_path: Path) -> None:
 
 
 def repeated(page: Any) -> float:
-    """Largest relative difference at the end between a page's motion and that of its code."""
+    """Largest relative difference between a page's final state and that of its Python code."""
     ends = f"Object.entries({PLAYER}.columns).map(([name, values]) => [name, values.at(-1)])"
     made: dict[str, Any] = {}
     exec(page.evaluate(f"{PLAYER}.code()"), made)
@@ -190,7 +188,7 @@ def test_the_map_shows_the_first_outcome_of_each_blow(opened: Opened) -> None:
     assert len(met) > 1 and met <= {*names}
 
 
-def test_the_map_is_computed_only_in_view(opened: Opened) -> None:
+def test_the_map_is_computed_only_when_in_view(opened: Opened) -> None:
     html = rl.explore(rl.scenes.report, t_end=1.0).to_html()
     page = opened(html, reduced_motion="reduce", viewport={"width": 1000, "height": 300})
     page.wait_for_function(f"{PLAYER}.fills === false && {PLAYER}.host.dataset.time")
@@ -199,7 +197,7 @@ def test_the_map_is_computed_only_in_view(opened: Opened) -> None:
     page.wait_for_function(f"{PLAYER}.mapped && !{PLAYER}.filling && {PLAYER}.cells.next().done")
 
 
-def test_sliders_change_the_motion_and_code_and_link_reproduce_it(opened: Opened) -> None:
+def test_sliders_change_the_motion_which_code_and_link_reproduce(opened: Opened) -> None:
     write = made_by("live")["page"]
     page = opened(write(rl.explore(rl.scenes.jump)), reduced_motion="reduce")
     for name in page.evaluate(f"{PLAYER}.rows.map(({{ name }}) => name)"):
@@ -231,7 +229,7 @@ def test_sliders_change_the_motion_and_code_and_link_reproduce_it(opened: Opened
     assert "b must be a positive" in page.locator(".refused").inner_text()
 
 
-def test_a_link_from_before_rolling_resistance_opens_its_scene(opened: Opened) -> None:
+def test_an_old_link_without_rolling_resistance_opens_its_scene(opened: Opened) -> None:
     write = made_by("live")["page"]
     page = opened(write(rl.explore(rl.scenes.report)), reduced_motion="reduce")
     link = (TESTS / "export" / "old_files" / "link.txt").read_text(encoding="utf-8").strip()
@@ -255,10 +253,8 @@ LINKED = {
 }  # fmt: skip
 
 
-def test_a_link_of_a_scene_opens_its_motion_and_the_link_of_the_page_its_scene(
-    opened: Opened,
-) -> None:
-    """The page rounds heights, inertias and slips, so only times before many impacts agree."""
+def test_links_carry_scenes_to_the_page_and_back(opened: Opened) -> None:
+    """The page rounds heights, inertias and slips, so motions agree only before many impacts."""
     write = made_by("live")["page"]
     page = opened(write(rl.explore(rl.scenes.report)), reduced_motion="reduce")
     times = [0.0, 0.5, 1.0]

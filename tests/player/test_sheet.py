@@ -23,8 +23,8 @@ MARKS = """answers => answers.map(([task, text]) => {
 
 
 @pytest.mark.parametrize("number", [3, 7, 8])
-def test_the_browser_gives_the_marks_of_python(number: int, opened: Callable[..., Any]) -> None:
-    """The answers are random, close to the ends of the intervals of marks, or not numbers."""
+def test_browser_and_python_give_the_same_marks(number: int, opened: Callable[..., Any]) -> None:
+    """The answers are random, or close to a value at which the mark changes, or not numbers."""
     html = course.sheet(number, seed=SEED).html
     assert "http" not in html.replace("http://www.w3.org", "")
     page = opened(html)
@@ -51,7 +51,7 @@ def test_the_browser_gives_the_marks_of_python(number: int, opened: Callable[...
 
 
 def known(number: str) -> list[float]:
-    """The answers at which the mark changes, and the doubles on either side of each."""
+    """The answers at which the mark changes, and the doubles next to each."""
     ends = _marks.key(number, SEED).ends
     return [v for end in ends for v in (end, math.nextafter(end, 9e9), math.nextafter(end, -9e9))]
 
@@ -62,7 +62,7 @@ def spelled(value: float, draw: random.Random) -> str:
 
 
 def test_a_page_has_every_formula_and_the_fields_of_its_tasks(opened: Callable[..., Any]) -> None:
-    """No source of a formula is left in the text, and nothing is wider than the page."""
+    """No TeX source is left in the text, and nothing is wider than the page."""
     for number in range(1, 10):
         page = opened(course.sheet(number, seed=SEED).html)
         page.evaluate("document.querySelectorAll('pre').forEach(code => code.remove())")

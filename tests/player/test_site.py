@@ -16,7 +16,7 @@ NOWHERE = dict.fromkeys(("http_proxy", "https_proxy", "all_proxy"), "http://127.
 ADDRESS = re.compile(r"<(?:script|img|link|iframe|source)\b[^>]*?(?:src|href)=\"(?:https?:)?//")
 FORMULA = r"<(span|div) class=\"math\b.*?</\1>"
 CODE = r"<(script|style|pre|code)\b.*?</\1>"
-ASKED = {  # words for the search, and the page that must come first
+ASKED = {  # search terms, and the page that must be listed first
     "friction": "start", "default friction": "start", "restitution": "start",
     "degrees": "recipes", "csv": "recipes", "parquet": "recipes", "save": "recipes",
     "load": "recipes", "second blow": "recipes", "slow motion": "recipes", "jupyter": "recipes",
@@ -118,20 +118,20 @@ def test_wide_code_and_output_scrolls_and_is_neither_wrapped_nor_cut_off(
         page.close()
 
 
-def test_no_page_links_to_its_own_title(pages: dict[Path, str]) -> None:
+def test_no_page_offers_itself_as_previous_or_next(pages: dict[Path, str]) -> None:
     for page, html in pages.items():
         for title in re.findall(r'<div class="title">(.*?)</div>', html):
             assert f"<title>{title} - " not in html, page
 
 
-def test_each_formula_is_in_one_chapter_whose_set_up_is_folded(pages: dict[Path, str]) -> None:
+def test_each_formula_is_in_one_chapter_and_set_up_code_is_hidden(pages: dict[Path, str]) -> None:
     chapters = {page.name: text for page, text in pages.items() if "02_physics_" in page.name}
     found = [int(n) for text in chapters.values() for n in re.findall(r"<h2>\((\d+)\)", text)]
     assert sorted(found) == list(range(1, 67)) and len(chapters) > 9
     assert all('hide above-input">' in text for text in chapters.values())
 
 
-def test_the_search_lists_the_right_page_first(site: Path, chromium: Any) -> None:
+def test_the_search_lists_the_expected_page_first(site: Path, chromium: Any) -> None:
     page = chromium.new_page()
     first = "document.querySelector('#search-results li a')?.getAttribute('href')"
     for words, wanted in ASKED.items():

@@ -1,4 +1,4 @@
-"""Strokes of the hand on a moving body give the motion that `simulate` computes with `blows`."""
+"""A user's strokes on a moving body give the motion that `simulate` computes with `blows`."""
 
 import html
 import math
@@ -43,7 +43,7 @@ def seek(page: Any, t: float) -> None:
 
 
 def place(page: Any, where: str) -> tuple[float, float]:
-    """Pixels of the hand's "top", or of a point of the "body" left of its centre."""
+    """Pixel position of the "top" of the hand, or of a point of the "body" left of its centre."""
     x, y = page.evaluate(
         f"""(where) => {{
           const player = {PLAYER}, [view] = player.views;
@@ -129,7 +129,7 @@ def copied(page: Any) -> rl.Trajectory:
      (rl.scenes.report.replace(rolling_resistance=0.3, friction=1.0), rl.Mode.ROLLING)],
     ids=["rolls", "slides", "flies", "slope", "resistance"],
 )  # fmt: skip
-def test_two_strokes_are_one_motion_of_simulate(
+def test_two_strokes_give_the_motion_of_simulate(
     opened: Opened, scene: rl.Scene, mode: rl.Mode
 ) -> None:
     page = explored(opened, scene)
@@ -196,9 +196,7 @@ def test_undo_returns_to_the_first_blow(opened: Opened) -> None:
     assert undo.get_attribute("aria-disabled") == "true"
 
 
-def test_a_drag_moves_no_blow_after_an_undo_or_a_change_of_the_scene(
-    opened: Opened,
-) -> None:
+def test_a_drag_moves_no_blow_after_an_undo_or_a_change_of_the_scene(opened: Opened) -> None:
     page = live(opened)
     strike(page, 1.0)
     for key, part, left in (("Escape", ".player", [0, 1]), ("ArrowRight", "#in-b", [0, 1, 2])):
@@ -214,8 +212,8 @@ def test_a_drag_moves_no_blow_after_an_undo_or_a_change_of_the_scene(
         assert times(page) == left and blows(page)[:2] == known
 
 
-def test_twenty_strokes_are_one_motion_of_simulate(opened: Opened) -> None:
-    """Each stroke has another point and strength, up to the ends of the sliders."""
+def test_twenty_strokes_give_the_motion_of_simulate(opened: Opened) -> None:
+    """The points and strengths of the strokes cover the ranges of the sliders."""
     page = explored(opened)
     for k in range(20):
         strike(page, 0.25 * (k + 1))
@@ -282,7 +280,7 @@ def test_strokes_work_in_a_sandboxed_frame(opened: Opened) -> None:
     assert times(frame) == [0, 1]
 
 
-def test_the_link_of_the_live_page_has_its_blows(opened: Opened) -> None:
+def test_the_link_of_the_live_page_contains_its_blows(opened: Opened) -> None:
     """The blows remain after a change of the body, a change of the language and a reload."""
     page = live(opened)
     strike(page, 1.0)
@@ -323,7 +321,7 @@ def test_a_link_with_impossible_blows_opens_the_page_without_them(
     assert times(page) == [0] and not page.evaluate(f"{PLAYER}.refusal")
 
 
-def test_a_stroke_on_the_live_page_hits_the_body_with_a_force(opened: Opened) -> None:
+def test_a_stroke_on_the_live_page_hits_the_body_and_is_not_zero(opened: Opened) -> None:
     page = live(opened)
     half = page.evaluate(f"{PLAYER}.film.strongest") / 2
     upright = simulated(page, rl.scenes.report).when(theta=math.pi / 2)[0]

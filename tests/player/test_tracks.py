@@ -1,4 +1,4 @@
-"""The unpacked data of the player are within their tolerance of the motion."""
+"""The player's data, once unpacked, agree with the motion to within their tolerance."""
 
 import base64
 import json
@@ -55,7 +55,7 @@ def test_the_motion_between_samples_stays_within_its_tolerance(name: str) -> Non
     tolerance = 2e-3 * size
     found = track(motion, [(0.0, end)], tolerance)
     times = np.random.default_rng(1).uniform(0.0, end, 4000)
-    # the time of an impact is rounded like any t, so times this close to an impact are left out
+    # the packed time of an impact is rounded, so times this close to an impact are left out
     near = 4 * tolerance / max(1e-9, float(np.max(np.hypot(motion.x_dot, motion.z_dot))))
     for event in motion.events:
         times = times[np.abs(times - event.t) > near]
@@ -66,7 +66,7 @@ def test_the_motion_between_samples_stays_within_its_tolerance(name: str) -> Non
         assert missed <= 4 * tolerance, column
 
 
-def test_an_impact_remains_a_jump() -> None:
+def test_an_impact_remains_a_jump_of_the_velocity() -> None:
     motion = rl.simulate(rl.scenes.drop, 1.0)
     (impact,) = [event for event in motion.events if event.kind is rl.EventKind.IMPACT]
     times = sample_times(motion, 1.0, 1e-4)
@@ -74,7 +74,7 @@ def test_an_impact_remains_a_jump() -> None:
     after = int(np.searchsorted(times, impact.t))
     assert times[after] == impact.t and times[after - 1] == np.nextafter(impact.t, 0)
     at = motion.sol(times[[after - 1, after]])
-    # the fall ends at sqrt(2 g · 1 m); afterwards the body rolls on, much slower
+    # the fall ends at a speed of sqrt(2 g · 1 m); afterwards the body rolls much more slowly
     assert at.z_dot[0] == pytest.approx(-math.sqrt(2 * 9.81), rel=1e-9)
     assert abs(at.z_dot[1]) < 0.5 * abs(at.z_dot[0])
 
@@ -154,7 +154,7 @@ def test_the_page_requests_no_other_file() -> None:
     ],
     ids=["instant", "rest", "turns", "flat", "tall", "tiny", "huge", "bounces"],
 )
-def test_films_at_the_limits_stay_small(scene: rl.Scene, seconds: float) -> None:
+def test_films_of_extreme_scenes_stay_small(scene: rl.Scene, seconds: float) -> None:
     html = rl.animate(rl.simulate(scene, seconds), width=64)._repr_html_()
     assert html.startswith('<div class="rolling-ellipse"') and len(html) < 1_500_000
     data = carried(html)

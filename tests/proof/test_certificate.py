@@ -1,8 +1,8 @@
 """`certify` against brute force on ten thousand random scenes.
 
 The oracle (oracles/rolling.py) uses Newton's law, the energy and dense samples in long double,
-refined to 1e-16; the package proves signs of polynomials. Every bound is what the oracle allows for
-double arithmetic: 1e-12 of the terms and the effect of a few ulp of the energy.
+refined to 1e-16; the package proves signs of polynomials. Each bound is the oracle's allowance for
+double arithmetic: 1e-12 of the terms, plus the effect of a few ulps of the energy.
 """
 
 import math
@@ -52,7 +52,7 @@ class Judged(NamedTuple):
 
 
 def column(found: list[Any], name: str) -> Floats:
-    """A number of each certificate as a column; nan where it is None."""
+    """A field of every certificate; nan where it is None."""
     values = [getattr(one, name) for one in found]
     return np.array([math.nan if value is None else value for value in values])
 
@@ -191,8 +191,8 @@ def test_the_smallest_normal_force_agrees_with_the_oracle(judged: list[Judged]) 
         assert np.all((angle >= 0) & (angle <= math.pi / 2))
         sides = oracles.geometry.reduced(angle, chunk.sample.a[known], chunk.sample.b[known])
         there = oracles.rolling.forces(chunk.sample.motion(known), *sides)
-        # near an extreme the force hardly varies, or an ulp of the angle changes it: 1e-6 of the
-        # terms covers both
+        # near an extreme the force is flat, or so steep that an ulp of the angle changes it: 1e-6
+        # of the terms covers both
         slack = 1e6 * there.normal_error
         assert np.all(np.abs(there.normal - chunk.truth.normal[known]) <= slack)
 
@@ -210,13 +210,13 @@ def test_the_largest_friction_needed_agrees_with_the_oracle(judged: list[Judged]
         assert np.all((angle >= 0) & (angle <= math.pi / 2))
         sides = oracles.geometry.reduced(angle, chunk.sample.a[kept], chunk.sample.b[kept])
         there = oracles.rolling.forces(chunk.sample.motion(kept), *sides)
-        sturdy = contact[kept] > 1e4  # a narrower peak is below the resolution of the angle
+        sturdy = contact[kept] > 1e4  # otherwise the angle cannot resolve the peak
         ratio = np.abs(there.friction / there.normal)
         near = np.abs(ratio - chunk.truth.needed[kept]) <= 1e6 * chunk.truth.needed_error[kept]
         assert np.all(near | ~sturdy)
 
 
-def test_ends_at_is_given_only_where_rolling_ends(judged: list[Judged]) -> None:
+def test_ends_at_is_set_only_if_rolling_ends(judged: list[Judged]) -> None:
     for chunk in judged:
         given = np.isfinite(chunk.ends_at)
         assert not np.any(given & (chunk.validity == Validity.VALID))
@@ -224,8 +224,8 @@ def test_ends_at_is_given_only_where_rolling_ends(judged: list[Judged]) -> None:
 
 
 class Road(NamedTuple):
-    """The angles that a motion passes after its start, each once: the signed reduced angle phi
-    (theta = base + phi) in one leg, or in two for a swing."""
+    """The angles that a motion passes after its start, each once, as signed reduced angles phi
+    (theta = base + phi): one leg for a rotation, two for a swing."""
 
     base: np.longdouble
     start: np.longdouble
@@ -290,8 +290,8 @@ def assert_ends_there(
 
 
 def test_ends_at_is_the_first_violation_of_the_law(judged: list[Judged]) -> None:
-    """`ends_at` is the first angle where the law fails, for scenes that violate it by 1e-4 of the
-    forces (the law is crossed, not grazed), on 1200 points per quarter turn."""
+    """The scenes violate the law by at least 1e-4 of the forces, so that they do not merely graze
+    its limit. The law is evaluated at 1200 angles per quarter turn."""
     checked = 0
     for chunk in judged:
         contact, grip = chunk.margins()
@@ -310,7 +310,7 @@ def test_ends_at_is_the_first_violation_of_the_law(judged: list[Judged]) -> None
     assert checked >= 1000
 
 
-def test_ends_at_is_right_near_a_nearly_weightless_tip() -> None:
+def test_ends_at_is_the_start_near_a_nearly_weightless_tip() -> None:
     """N is 2.6e-9 of the weight on the tip. The start, 3.7e-9 rad from the tip, already needs more
     friction than there is: the angle resolves this distance, h does not."""
     scene = Scene(2.239752036298014, 2.87251997990579, gravity=5.632220764118916,
@@ -358,8 +358,8 @@ def test_low_friction_ends_rolling_soon_after_a_start_with_no_friction_force(
         assert found.ends_at is not None
         way = side * (mp.mpf(found.ends_at) - theta)
         assert way < 1e3 * friction
-        # angles up to half a turn are resolved to an ulp, or relative to the turn if the start is
-        # 0, and forces to 1e-12, the oracle's allowance for double arithmetic
+        # the angle is accurate to ulps of half a turn, or of `way` if theta = 0, and forces to
+        # 1e-12, the oracle's allowance for double arithmetic
         near = (4 * EPS * math.pi if theta else 0) + 1e-12 * abs(way)
         for share in (0, 0.01, 0.5, 1):
             assert grip(scene, gyration2, theta + side * share * max(way - near, 0)) > 0
@@ -369,11 +369,11 @@ def test_low_friction_ends_rolling_soon_after_a_start_with_no_friction_force(
 @pytest.mark.parametrize("beside", [1e-13, 1e-9, 1e-5])
 @pytest.mark.parametrize("speed", [-2.0, -0.9, 0.0, 1.0])
 @pytest.mark.parametrize("b", [1.9, 1.001, 40.0])
-def test_a_fall_from_the_tip_rolls_until_the_law_fails(
+def test_a_body_falling_from_its_tip_rolls_until_the_law_fails(
     b: float, speed: float, beside: float
 ) -> None:
     """The body falls directly, turns back first or crosses the tip. The angle at which rolling ends
-    is right relative to its distance from the tip."""
+    is accurate relative to its distance from the tip."""
     with mp.workdps(DIGITS):
         gyration2 = (1 + mp.mpf(b) ** 2) / 4
         rate = math.sqrt((b * b - 1) / b / (gyration2 + b * b))  # rate of falling
@@ -393,8 +393,8 @@ def test_a_fall_from_the_tip_rolls_until_the_law_fails(
 
 
 @pytest.mark.parametrize("shift", [1e-3, -1e-3])
-def test_a_wrong_end_is_detected(shift: float) -> None:
-    """The check rejects a wrong end: the grip is lost at 0.2488 rad and nowhere else nearby."""
+def test_a_wrong_ends_at_is_detected(shift: float) -> None:
+    """Grip is lost at 0.2488 rad and nowhere else nearby."""
     scene = Scene(2.0, 1.0, friction=0.2, omega=2.0)
     moving = oracles.rolling.motion(
         *(np.array([value]) for value in (2.0, 1.0, 1.25, 9.81, 0.0, 2.0))
@@ -437,8 +437,8 @@ def test_a_circle_rolls_forever(friction: float, omega: float) -> None:
     assert found.largest_friction_needed == pytest.approx(0.0, abs=rounding / 9.81)
 
 
-def test_a_circle_needs_almost_no_friction() -> None:
-    """A circle rolls with any friction; without friction its contact slides from the start."""
+def test_a_circle_rolls_with_any_friction_above_zero() -> None:
+    """Without friction its contact slides from the start."""
     scene = Scene(1.5, 1.5, omega=2.0, theta=0.7, friction=1e-300)
     assert certify(scene).validity is Validity.VALID
     slides = certify(scene.replace(friction=0.0))

@@ -16,7 +16,7 @@ from oracles.numbers import EPS
 from rolling_ellipse import Scene, Validity, certify
 
 GRAVITY = 9.81
-PLACES = 3000  # angles of a scan in a half turn, besides those near flat sides and tips
+PLACES = 3000  # angles per half turn of a scan, besides those near flat sides and tips
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
 Floats = NDArray[np.float64]
 
@@ -124,11 +124,9 @@ def test_no_verdict_is_wrong(seed: int) -> None:
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_a_nearly_round_body_rolls_far_and_stops_rolling_at_its_bound(direction: int) -> None:
-    """The last half turn of a long roll agrees with the minimum of a bound over the angle.
-
-    The forces are linear in W, so that at each angle the law holds while W is below a bound W_plus.
-    Downhill W grows by w per half turn. Rolling ends in the half turn after min (W_plus - W)/w.
-    """
+    """The forces are linear in W, so that at each angle the law holds while W is below a bound
+    W_plus. Downhill W grows by w per half turn. Rolling ends in the half turn after the minimum of
+    (W_plus - W)/w over the angle."""
     scene = Scene(1.0, 1 - 1e-5, slope=0.05, omega=3.0 * direction, friction=0.5)
     a, b, k2 = scene.a, scene.b, scene.gyration2
     into, along = GRAVITY * math.cos(0.05), GRAVITY * math.sin(0.05)
@@ -152,7 +150,7 @@ def test_a_nearly_round_body_rolls_far_and_stops_rolling_at_its_bound(direction:
     assert last > 1e4
     assert math.floor(found.ends_at / math.pi) in (last, last - 1)
     share = found.ends_at / math.pi - math.floor(found.ends_at / math.pi)
-    # the limit is met at the end, between two of the angles
+    # the motion meets the limit at `ends_at`, between two of the angles
     there = np.interp(share * math.pi, angle, half_turns)
     assert there == pytest.approx(math.floor(found.ends_at / math.pi), abs=0.5)
 
@@ -192,11 +190,7 @@ def test_extremes_are_stated_only_for_rocking() -> None:
 
 @pytest.mark.parametrize("friction", [0.3, 0.8, math.inf])
 def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
-    """The contact motion stops rolling at the certified angle, and forced rolling becomes invalid
-    at the same time.
-
-    Both follow the same exact motion up to a rounded time, and therefore to a rounded angle.
-    """
+    """Contact and forced rolling follow the same exact motion, up to a rounded time and angle."""
     scene = Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=-2.5, friction=friction)
     found = certify(scene)
     assert found.validity is Validity.INVALID

@@ -2,9 +2,9 @@
 
 **A new refusal goes into the table of its module**: a row contains the name of the argument, with
 which the message must start, and the call. `wrong` makes rows for one call with many wrong values.
-If no argument is wrong (a package is missing), the class of the exception replaces the name.
-`test_messages.py` makes the calls, checks the grammar of the messages, and compares the lines that
-raise with the sources; `test_numbers.py` has the rules that all numbers share.
+If no argument is at fault (a package may be missing), the class of the exception replaces the name.
+`test_messages.py` makes the calls, checks the form of the messages, and checks that every `raise`
+in the sources is reached; `test_numbers.py` tests the rules that all numerical arguments share.
 """
 
 import math
@@ -21,7 +21,7 @@ Row = tuple[str | type[Exception], Callable[[Path], Any]]
 INF, NAN = math.inf, math.nan
 NOT_FINITE = [INF, -INF, NAN]
 NOT_POSITIVE = [0.0, -0.0, -1.0, *NOT_FINITE]
-# : Values that are wrong for most arguments; `but` removes those that an argument accepts.
+#: Values that are wrong for most arguments; `but` removes those that an argument accepts.
 ANYTHING: list[Any] = [
     "a", "", b"a", 42, 1.5, -1, NAN, INF, 10**400, 2j, [], [1, 2], {}, object(), len, np.array([]),
     np.array([1.0, 2.0]), np.array("x"), np.array([None, 1.0]), np.ma.masked, Figure,

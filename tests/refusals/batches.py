@@ -126,7 +126,7 @@ def ended(text: str) -> Callable[[Path], Any]:
 
 
 def renamed(folder: Path) -> Any:
-    """Store a scene that cannot exist in a chunk with the right name."""
+    """Store an impossible scene in a chunk whose name matches its content."""
     path = made(folder)
     file = next(path.glob("0*.npz"))
     with np.load(file) as data:

@@ -115,8 +115,8 @@ def header(shape: str, dtype: str = "<f8", version: bytes = b"\x01\x00") -> byte
     return b"\x93NUMPY" + version + len(said).to_bytes(2, "little") + said
 
 
-# : Headers of arrays that are too large, too small, nested too deeply, of objects or of another
-# : version, and a pickle.
+#: Headers of arrays that are too large, too small, nested too deeply, of objects or of another
+#: version, and a pickle.
 HEADERS = [
     *map(header, ("(1000000000000,)", "(13,)", "(-12, -1)", f"({'1, ' * 70}12)", "'all'",
                   "(" * 500 + "12" + ",)" * 500, "-" * 7000 + "1")),

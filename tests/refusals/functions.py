@@ -30,7 +30,7 @@ HIT: dict[str, Any] = {
     "theta": 0.3, "x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3, "restitution": 0.5,
     **AXES,
 }  # fmt: skip
-# : theta, x_dot, z_dot and omega before an impact, in four rows.
+#: theta, x_dot, z_dot and omega before an impact, in four rows.
 BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
@@ -93,7 +93,7 @@ REFUSALS: list[Row] = [
         rl.flow_jacobian, FLOW, wrt=[[], "x", 3, ["t", "t"], "gyration2"], t=[*NOT_FINITE, "x"],
         a=NOT_POSITIVE, workers=WORKERS,
     ),
-    # the body almost stops on its tip, where a rounding decides whether it swings back
+    # the body almost stops on its tip, where rounding decides whether it swings back
     ("wrt", lambda _: rl.flow_jacobian(1e9, **AXES, theta=1.0, omega=3.0)),
     *wrong(rl.classify, TURN, a=NOT_POSITIVE, b=NOT_POSITIVE, gravity=NOT_POSITIVE,
            gyration2=NOT_POSITIVE, theta=NOT_FINITE, omega=NOT_FINITE, friction=[-1.0, NAN],

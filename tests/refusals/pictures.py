@@ -61,7 +61,7 @@ def film_that_fails(folder: Path) -> None:
 
 
 def film_that_is_stopped(folder: Path) -> None:
-    """Interrupt a film by an exception in a frame; the failure of the writer must not hide it."""
+    """Raise an exception while a frame is drawn; the writer's own failure must not hide it."""
     program = folder / "ffmpeg"
     program.write_text("#!/bin/sh\ncat > /dev/null\nexit 1\n")
     program.chmod(0o755)
@@ -183,7 +183,7 @@ REFUSALS: list[Row] = [
     # players
     ("t_end", long_film),
     *wrong(rl.explore, {}, scene=[None, 42, "report", scenes, MOTION]),
-    *wrong(rl.explore, {"scene": scenes.report},  # spans up to 40 sqrt(2 m / 9.81 m/s^2) = 18.06 s
+    *wrong(rl.explore, {"scene": scenes.report},  # at most 40 sqrt(2 m / 9.81 m/s^2) = 18.06 s
            t_end=[0.0, -1.0, NAN, INF, 18.1, 1e9, "1", [1.0], object()]),
     *wrong(rl.explore, {"scene": scenes.report},
            language=["fr", 1, {"title": "x"}, WORDS | {"x": "x"}, WORDS | {"lang": 1},

@@ -40,7 +40,7 @@ UNREACHABLE: dict[str, str] = {
     "there is no integrator for the method '": "settings refuse such a method before",
     "t must be empty, for the motion ended before it began: ": "no slide is known that is too quick"
     " for its first piece since angles below 1e-100 are none to endless friction",
-    # texts that a race stores as the reason of a run without an answer
+    # texts that a race stores as the reason why a run has no answer
     "flow must be given a scene that rolls": "a reason",
     "raise IntegrationError(motion)": "a reason",
     'NotImplementedError("': "a reason",
@@ -48,7 +48,7 @@ UNREACHABLE: dict[str, str] = {
 }
 
 
-# : Possible starts of the last part of a message, which shows the value or its fault.
+#: Possible starts of the last part of a message, which shows the value or its fault.
 ENDS = ("got ", ", but ", ": ", " be given", " without a blow")
 
 
@@ -102,7 +102,7 @@ def is_refusal(name: str | type[Exception], found: Provoked) -> bool:
     return begins and ends and isinstance(found.error, ValueError | TypeError)
 
 
-def test_each_invalid_call_is_rejected_by_name(all_provoked: list[Provoked]) -> None:
+def test_the_message_for_each_invalid_call_names_the_argument(all_provoked: list[Provoked]) -> None:
     wrong = [
         f"{name}: {found.error!r}"
         for (name, _), found in zip(TABLE, all_provoked, strict=True)
@@ -115,7 +115,7 @@ def test_a_rejected_picture_leaves_no_figure(all_provoked: list[Provoked]) -> No
     assert all_provoked and pyplot.get_fignums() == []
 
 
-ours: Any = rolling_ellipse  # Any, since a type checker would reject these calls
+ours: Any = rolling_ellipse  # Any, because a type checker would reject these calls
 HIT = {**dict.fromkeys(("theta", "x_dot", "z_dot", "omega", "friction"), 0.3), "restitution": 0}
 AT_REST = ours.simulate(ours.Scene(2.0, 1.0), 1.0)
 

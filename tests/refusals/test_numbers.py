@@ -1,5 +1,5 @@
-"""All numerical arguments obey the same rules and refuse other values by name, without a
-warning."""
+"""All numerical arguments obey the same rules. Other values are refused, without a warning, in a
+message that names the argument."""
 
 from collections import deque
 from collections.abc import Callable
@@ -29,7 +29,7 @@ OPTIONAL = ("z", "inertia", "gyration2", "x", "x_dot", "z_dot")
 
 Door = Callable[[Any], Any]
 
-# : Calls whose tested argument must be one number, by its name.
+#: Names of arguments that must be single numbers, and calls with these arguments.
 SCALAR_DOORS: list[tuple[str, Door]] = [
     *((name, lambda v, name=name: rl.Scene(**{**AXES, name: v})) for name in SCENE_NUMBERS),
     *((name, lambda v, name=name: rl.thresholds(**{**AXES, name: v}))
@@ -51,7 +51,7 @@ SCALAR_DOORS: list[tuple[str, Door]] = [
     ("d", lambda v: report.struck_speed(48.0, v, **AXES, mass=10.0)),
 ]  # fmt: skip
 
-# : Calls whose tested argument is a number or an array.
+#: Names of arguments that may be numbers or arrays, and calls with these arguments.
 ARRAY_DOORS: list[tuple[str, Door]] = [
     *((name, lambda v, name=name: rl.Impulse(**{name: v})) for name in ("jx", "jz", "dx", "dz")),
     *((name, lambda v, name=name: rl.Impulse.press(**{"F": 48.0, "d": 1.0, name: v}))

@@ -26,7 +26,7 @@ def corrected(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
 
 
 @pytest.mark.parametrize("options", [{}, {"consistent": "refuse"}, {"stabilization": "none"}])
-def test_corrected_rejects_and_names_every_violation(options: dict[str, Any]) -> None:
+def test_a_rejected_start_names_every_violation(options: dict[str, Any]) -> None:
     message = f"^q and q_dot must meet the constraints at t = 0, got {OWN_VIOLATIONS}$"
     with pytest.raises(ValueError, match=message):
         corrected(OWN_Q, OWN_RATES, 1.0, **options)
@@ -37,10 +37,10 @@ def test_corrected_rejects_and_names_every_violation(options: dict[str, Any]) ->
 
 
 @pytest.mark.parametrize(("a", "theta"), [(2.0, -1.0), (100.0, -0.01)])
-def test_corrected_accepts_starts_within_rounding_of_coordinates(a: float, theta: float) -> None:
-    """The tolerance of f4 = psi - psi(theta), where tan psi = a^2 tan theta, is twice the sum of 16
-    ulp of psi and theta and 8 eps of psi - theta, plus 16 eps of |theta| + |psi|. f4 itself is
-    known to 1e-15."""
+def test_starts_within_rounding_of_the_coordinates_are_accepted(a: float, theta: float) -> None:
+    """The tolerance of f4 = psi - psi(theta), where tan psi = a^2 tan theta, is twice the effect of
+    16 ulps of psi and of theta and 8 eps of psi - theta, plus 16 eps (|theta| + |psi|). f4 itself
+    is accurate to 1e-15."""
     q, q_dot = rl.kinematics(theta, 0.0, a=a, b=1.0)
     slope = a**2 * (1 + np.tan(theta) ** 2) / (1 + a**4 * np.tan(theta) ** 2)
     ulp = np.spacing(np.abs(q))
@@ -55,7 +55,7 @@ def test_corrected_accepts_starts_within_rounding_of_coordinates(a: float, theta
         assert ("f4 = " in said) == (off > allowed), (off, said)
 
 
-def test_corrected_projects_the_reports_own_start() -> None:
+def test_projecting_the_reports_own_start_changes_only_its_rates() -> None:
     """The report's start touches the ground, so only its rates change. omega becomes k^2/(k^2 +
     h^2) = 1.25/2.25 of 1 rad/s, because x_dot is 0 and z_dot has the factor h' = 0; psi_dot becomes
     (a/b)^2 omega."""
@@ -65,7 +65,7 @@ def test_corrected_projects_the_reports_own_start() -> None:
     assert motion.success and abs(motion.constraint_residuals().gap[1]) < 1e-14
 
 
-def test_corrected_projects_to_the_nearest_state() -> None:
+def test_a_start_is_projected_to_the_nearest_consistent_state() -> None:
     """No other angle, and no other rates at that angle, are nearer in the kinetic metric."""
     q, q_dot = np.array([0.3, 1.5, 0.4, 5.0, 3.0]), np.array([1.0, 0.5, 2.0, 7.0, -3.0])
     motion = corrected(q, q_dot, [0.0], consistent="project", mass=3.0)
@@ -97,7 +97,7 @@ def test_corrected_projects_to_the_nearest_state() -> None:
 @pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
 @pytest.mark.parametrize("which", [3, 4])
 @pytest.mark.parametrize("off", [1.0, 1e10, -1e20, 1e50])
-def test_errors_in_psi_and_r_do_not_move_a_body(stabilization: str, which: int, off: float) -> None:
+def test_a_circle_ignores_errors_in_psi_and_r(stabilization: str, which: int, off: float) -> None:
     """psi and r have no mass and do not enter the equations of motion of a circle, which continues
     rolling."""
     q, q_dot = rl.kinematics(0.3, 0.2, a=1.5, b=1.5)
@@ -108,7 +108,7 @@ def test_errors_in_psi_and_r_do_not_move_a_body(stabilization: str, which: int, 
     assert motion.x == pytest.approx(q[0] + 0.3 * motion.t, rel=1e-14, abs=1e-15)
 
 
-def test_corrected_runs_the_reports_own_start_as_given_with_a_warning() -> None:
+def test_the_reports_own_start_runs_as_given_with_a_warning() -> None:
     how, times = {"consistent": "as_given", "stabilization": "none"}, np.linspace(0, 2, 21)
     with pytest.warns(report.InconsistentStartWarning) as caught:
         motion = corrected(OWN_Q, OWN_RATES, times, **how)
@@ -116,7 +116,7 @@ def test_corrected_runs_the_reports_own_start_as_given_with_a_warning() -> None:
     assert str(said.message) == f"the start violates constraints: {OWN_VIOLATIONS}"
     assert said.filename == __file__
     assert np.array_equal(motion.q[0], OWN_Q) and np.array_equal(motion.q_dot[0], OWN_RATES)
-    # index 1 keeps the rates of f1 ... f4, of some 10, to 1e-8 per step in some 100 steps
+    # the index-1 equations keep the rates of f1 ... f4, about 10, to 1e-8 per step for 100 steps
     held = motion.constraint_residuals()
     law = np.outer(motion.t, [1.0, 0.0, -2.5])
     assert np.allclose(held.position, law, rtol=0, atol=1e-5)
@@ -162,7 +162,7 @@ def test_the_gap_of_an_inconsistent_start_evolves_as_predicted(
 
 
 @pytest.mark.parametrize(("method", "stabilization"), WAYS)
-def test_corrected_equals_the_multipliers_model(method: Any, stabilization: Any) -> None:
+def test_corrected_equations_equal_the_multipliers_model(method: Any, stabilization: Any) -> None:
     """Motions agree bit for bit; tests/multipliers compares the model with exact rolling."""
     times = np.linspace(0, 3, 31)
     scene = rl.Scene(2.0, 1.0, mass=10.0, theta=0.2, omega=2.0, x=float(Q[0]))
@@ -175,7 +175,7 @@ def test_corrected_equals_the_multipliers_model(method: Any, stabilization: Any)
         assert np.array_equal(getattr(motion, name), getattr(same, name))
 
 
-def test_corrected_has_its_own_defaults() -> None:
+def test_corrected_equations_have_their_own_defaults() -> None:
     default = corrected(Q, Q_DOT, [1.0])
     assert (default.settings.method, default.settings.stabilization) == ("dop853", "projection")
     assert (default.settings.rtol, default.settings.atol) == (1e-8, 1e-10)
@@ -190,7 +190,7 @@ def test_corrected_has_its_own_defaults() -> None:
     assert corrected(Q, Q_DOT, 1.0).t.size == 1001
 
 
-def test_corrected_raises_where_it_stops() -> None:
+def test_the_error_at_max_steps_contains_the_motion_so_far() -> None:
     times = np.linspace(0, 1, 11)
     said = r"^max_steps = 4 was reached at t = 0\.1"
     with pytest.raises(rl.IntegrationError, match=said) as caught:

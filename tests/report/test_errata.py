@@ -1,7 +1,7 @@
 """The errata of the report: the printed and the right number of each row, then each equation.
 
-The right numbers agree with closed forms, written here from h and its derivatives
-(oracles/geometry.py), with psi and r by r cos(psi - theta) = h and r sin(psi - theta) = h'.
+The right numbers agree with closed forms in h and its derivatives (oracles/geometry.py), where psi
+and r follow from r cos(psi - theta) = h and r sin(psi - theta) = h'.
 """
 
 import math
@@ -23,7 +23,7 @@ ANGLE = 0.7  # angle at which the errata are evaluated [rad]
 
 
 class Exact:
-    """The errata's exact motion (theta = 0.2, omega = 3.2 rad/s) as it passes an angle."""
+    """The exact motion that starts at theta = 0.2, omega = 3.2 rad/s, as it passes an angle."""
 
     def __init__(self, theta: float, a: float = 2.0, b: float = 1.0) -> None:
         def inertia(at: Support) -> float:
@@ -56,7 +56,7 @@ class Exact:
         return self.lifted * self.cosine - self.friction * self.sine
 
     def all_terms(self) -> float:
-        """F of eq 40 with every term, a = 2 m, b = 1 m: lambda3 by eq 37 times the divisor."""
+        """F of eq 40 with every term, for a = 2 m and b = 1 m: lambda3 of eq 37 times `divisor`."""
         turned = 16 * math.tan(ANGLE) ** 2 + 1
         lever = self.friction * self.h - self.lifted * self.slope
         return -16 * lever + 4 * turned * math.cos(ANGLE) ** 2 * self.couple
@@ -75,8 +75,7 @@ def numbers(where: str) -> report.Comparison:
 
 
 def close(value: float) -> Any:
-    """A value within 100 ulp: some ten operations in either form, none with a tenfold
-    cancellation."""
+    """A value to within 100 ulps: each form has some ten operations, and none cancels tenfold."""
     return pytest.approx(value, rel=100 * EPS, abs=0)
 
 
@@ -88,11 +87,11 @@ def zero(scale: float) -> Any:
 # --------------------------------------------------------------------------------------- the errata
 
 
-# Each row of the errata: printed value, right value, and size of the terms that cancel to it.
+# For each row of the errata: printed value, right value, and size of the terms that cancel.
 ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     # velocity of the geometric contact: x_dot + d/dt h' = (h + h'') omega = rho omega
     "eqs 9, 10, f1": lambda at: (at.rho * at.omega, 0, at.h * at.omega),
-    # r sin (psi_dot - theta_dot) cancels in the right row; the printed one keeps twice this term
+    # r sin (psi_dot - theta_dot) cancels in the right row; the printed row keeps twice this term
     "eq 32, df2, row 2": lambda at: (
         -2 * at.slope * (at.psi_dot - at.omega), 0, at.slope * at.psi_dot,
     ),
@@ -107,7 +106,7 @@ ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     ),
     # sign of the moment of N about the contact: lambda3 a b c^2 sin 2psi = N h'
     "eq 37": lambda at: (10 * at.normal * at.slope, -10 * at.normal * at.slope, 0),
-    # the printed row is no derivative of eq 10
+    # the printed row is not the derivative of eq 10
     "eq 38, f1 and f2": lambda at: (
         at.slope * at.omega - at.r_dot * math.sin(at.psi - ANGLE) - at.psi_dot * at.slope
         + at.omega * at.h, 0, at.h * at.omega,
@@ -115,9 +114,9 @@ ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     # gravity has the wrong sign
     "eq 39, λ2": lambda at: (10 * at.normal - 2 * 98.1, 10 * at.normal, 0),
     "eqs 39 to 42, g": lambda at: (at.lifted * at.cosine, 10 * at.normal * at.cosine, 0),
-    # lambda4 is -cos^2 couple/a^2 by the matrix and +cos^2 couple/a^2 by eq 35: the couple doubles
+    # lambda4 is -cos^2 couple/a^2 in the matrix, +cos^2 couple/a^2 in eq 35: the couple doubles
     "eq 39, λ4, sign": lambda at: (2 * at.couple, 0, at.couple),
-    # the multipliers solve eq 37; eq 36 with them is eq 41
+    # eq 41 is eq 36 with the multipliers that solve eq 37
     "eq 41": lambda at: (0, at.head() - 2 * at.polar**1.5 * at.all_terms() / at.divisor(), 1e3),
     "eq 42, first terms": lambda at: (-at.head() / at.divisor(), 0, 0),
     # F1 is 2 (...)^(3/2) F with F = 4 a^2 b^2 N h'
@@ -157,8 +156,8 @@ def test_overflowing_rates_are_infinite() -> None:
     assert np.array_equal(beyond, [-math.inf, math.inf, -1.7e308, math.inf, math.inf])
 
 
-def test_a_frozen_f1_lets_the_body_spin_on_the_spot() -> None:
-    """With f1 = 0 the contact x + h' stays in place while theta grows."""
+def test_the_printed_f1_lets_the_body_spin_on_the_spot() -> None:
+    """f1 as printed keeps the contact x + h' in place while theta grows."""
     q, _ = rl.kinematics(0.2, 2.0, **SHAPE)
     rates = report.consistent_rates(q, 2.0, printed=("f1",), **SHAPE)
     motion = report.simulate(q, rates, 0.5, equations="printed", printed=("f1",), **SHAPE)
@@ -181,7 +180,7 @@ def test_the_printed_cases_are_wrong_in_the_third_quadrant() -> None:
 
 
 def test_eq_38_uses_a_different_f1_from_eq_10() -> None:
-    """The printed f1 is rho omega too large; f3 and f4 are right."""
+    """f1 of eq 10 is rho omega too large; f3 and f4 of eq 38 are right."""
     at = Exact(ANGLE)
     q, q_dot = rl.kinematics(ANGLE, at.omega, **SHAPE)
     printed = report.eq_38(q, q_dot, **SHAPE)
@@ -191,7 +190,7 @@ def test_eq_38_uses_a_different_f1_from_eq_10() -> None:
     assert np.allclose(printed[2:], 0, atol=100 * EPS * 30)
 
 
-def test_lambda3_divides_by_zero() -> None:
+def test_the_printed_lambda3_divides_by_zero() -> None:
     found = numbers("eq 39, λ3")
     at = Exact(math.pi / 2 - 1e-3)
     # sin 2psi has lost 3 digits there; the right formula loses none
@@ -215,7 +214,7 @@ def test_the_correct_lambda4_vanishes() -> None:
     found, at = numbers("eq 39, λ4"), Exact(ANGLE, b=0.8)
     assert found.printed == close(-at.couple * math.cos(ANGLE) ** 2 / (4 * 0.8**2))
     assert found.right == zero(abs(found.printed))
-    # it follows from eq 35 with df4's sign, and from lambda1 and lambda2 of eq 39
+    # lambda4 follows from eq 35 with df4's sign, and from lambda1 and lambda2 of eq 39
     q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
     q_ddot = np.array([0.3, -0.8, 1.1, 0.0, 0.0])
     one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
@@ -225,8 +224,8 @@ def test_the_correct_lambda4_vanishes() -> None:
 
 
 def test_f_of_eq_40_lacks_terms_of_eq_42() -> None:
-    """Eq 40 differs from all the terms of eq 42 by its lost terms; F itself is 4 a^2 b^2 h' N, by
-    the moments about the contact."""
+    """Eq 40 differs from eq 42 by `lost`; F with all its terms is 4 a^2 b^2 h' N, from the moments
+    about the contact."""
     found, at = numbers("eqs 40, 42"), Exact(ANGLE)
     assert found.right == close(16 * at.slope * 10 * at.normal)
     q, _ = rl.kinematics(ANGLE, at.omega, **SHAPE)
@@ -264,10 +263,10 @@ def test_printed_equations_of_motion_are_off_by_the_misprints() -> None:
     sec2 = 1 + math.tan(0.6) ** 2
     # row theta prints -lambda2 r sin and -lambda4 a^2 sec^2 with the wrong sign
     assert gap[2] == pytest.approx(-2 * lever * -2.0 - 2 * 0.7 * 4 * sec2, rel=1e-13)
-    # row psi prints lambda1 r cos for 0, and -lambda2 r sin and +lambda3 ... with the wrong sign
+    # row psi has lambda1 r cos instead of 0; -lambda2 r sin and +lambda3 ... have the wrong sign
     squeeze = 2 * 0.7 * (4 - 0.49) * math.sin(2 * q[3])
     assert gap[3] == pytest.approx(q[4] * cosine - 2 * lever * -2.0 + 2 * 0.5 * squeeze, rel=1e-13)
-    # row r prints lambda1 sin for 0
+    # row r prints lambda1 sin instead of 0
     assert gap[4] == pytest.approx(sine, rel=1e-13)
 
 
@@ -287,7 +286,7 @@ def test_appendix_b_has_a_wrong_radius() -> None:
     assert printed - q[0] == pytest.approx(at.slope * found.printed / found.right, rel=1e-13)
 
 
-def test_eq_48_is_right_only_on_ice() -> None:
+def test_eq_48_is_right_only_without_friction() -> None:
     found = numbers("eqs 45–48")
     assert found.printed == close(5.76) and found.right == close(3.2)
     on_ice = rl.Scene(2.0, 1.0, mass=10.0, friction=0.0, impulse=rl.Impulse.press(48.0, 1.5))
@@ -301,7 +300,6 @@ def test_back_substitution_does_not_detect_the_misprints() -> None:
 
 
 def test_back_substitution_detects_a_changed_solution() -> None:
-    """An error of 1e-3 in a multiplier appears as an error of 1e-3."""
     q, q_dot = rl.kinematics(0.2, 2.0, **SHAPE)
     motion = report.simulate(q, q_dot, [0.1], equations="printed", printed=(), **SHAPE)
     assert isinstance(motion, report.PrintedMotion)
@@ -311,7 +309,7 @@ def test_back_substitution_detects_a_changed_solution() -> None:
 
 
 def test_a_uniform_rotation_does_not_test_the_rates() -> None:
-    """f2 and f3 hold on theta = t; f1 as printed is rho theta_dot, at most a^2/b."""
+    """f2 and f3 hold for theta = t; f1 as printed is rho theta_dot, at most a^2/b."""
     found = numbers("section 4.2.2, θ = t")
     assert found.printed == zero(2.0) and found.right == close(4.0)
 
@@ -366,7 +364,7 @@ def test_the_right_equations_hold_on_an_exact_motion() -> None:
     forces = report.multipliers(motion.q, q_ddot, **UNEVEN)
     left = report.equations_of_motion(motion.q, q_ddot, forces, **UNEVEN)
     matrix = report.constraint_matrix(motion.q, printed=("tan",), **shape)
-    # 100 ulp of the largest terms: lambda4 a^4 tan^2/b^2 in row 4, with the tangent
+    # 100 ulps of the largest terms: in row 4, lambda4 a^4 tan^2/b^2 of the form with tangents
     scale = 100 + np.max(np.abs(matrix[:, 3]), axis=1) * np.abs(forces[:, 3])
     assert np.all(np.abs(left) <= 100 * EPS * scale[:, None] + 1e-12)
     assert np.max(np.abs(report.eqs_33_to_37(motion.q, q_ddot, forces, **UNEVEN))) > 1
@@ -376,7 +374,7 @@ def test_the_right_equations_hold_on_an_exact_motion() -> None:
 
 
 def test_multipliers_equal_those_of_the_package() -> None:
-    """The multipliers are F, N, lambda3 for rows 2 (...)^(3/2) times grad f3, and lambda4 = 0."""
+    """They are F, N, lambda3 (for the row 2 (...)^(3/2) grad f3) and lambda4 = 0."""
     motion = trajectory()
     forces = report.multipliers(motion.q, accelerations(motion), **UNEVEN)
     polar = (0.7 * np.sin(motion.psi)) ** 2 + (2.0 * np.cos(motion.psi)) ** 2
@@ -388,8 +386,8 @@ def test_multipliers_equal_those_of_the_package() -> None:
 
 
 def test_the_right_rows_are_the_gradients_of_f1_to_f4() -> None:
-    """The product of rows and rates equals scaled `constraints` for any state, even off the
-    constraints."""
+    """The rows times the rates equal the scaled velocities of `constraints` for any state, even off
+    the constraints."""
     generator = np.random.default_rng(5)
     q, q_dot = generator.uniform(-2, 2, (2, 200, 5))
     velocity = rl.constraints(q, q_dot, a=2.0, b=0.7).velocity

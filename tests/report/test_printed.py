@@ -79,7 +79,7 @@ def test_large_steps_lift_the_body_off_the_ground() -> None:
     coarse = run(q, q_dot, [0, 60], printed=(), method="rk4", step=0.02)
     assert coarse.gap[1] == pytest.approx(0.84, abs=5e-3)
     assert coarse.energy[1] / coarse.energy[0] - 1 == pytest.approx(0.40, abs=5e-3)
-    # smaller steps reduce the error, unlike causes (a) and (b): order 4
+    # smaller steps reduce this error, with order 4, but not those of causes (a) and (b)
     runs = (run(q, q_dot, [0, 6], printed=(), method="rk4", step=h) for h in (0.02, 0.01, 0.005))
     errors = [abs(each.gap[1]) for each in runs]
     assert errors[0] > 4 * errors[1] > 16 * errors[2] > 0
@@ -131,7 +131,7 @@ def test_exact_starts_are_consistent_and_others_are_not(
             q_dot = report.consistent_rates(q, 1.7, a=a, b=b, printed=printed)
         options: dict[str, Any] = {"a": a, "b": b, "printed": printed, "max_steps": 1}
         assert run(q, q_dot, 0.0, **options).start.violations == ()
-        for i in range(1, 5):  # an error of 1e-9 (rad or m at least) is detected
+        for i in range(1, 5):  # an error of 1e-9 (relative, or rad or m) is detected
             moved = q.copy()
             moved[i] += 1e-9 * max(1.0, abs(q[i]))
             with pytest.raises(ValueError, match="must meet the constraints"):

@@ -1,8 +1,8 @@
 """`flow` and `period` beyond the table of test_flow_reference.py: limits, shapes, arrays.
 
-The oracle is the energy integral in 40 digits of reference/make_rolling_reference.py, which shares
+The oracle is the energy integral of reference/make_rolling_reference.py in 40 digits, which shares
 no code with the package. A unit is the effect of one rounding of every input on an answer, plus two
-ulp of the answer; test_flow_reference.py allows LARGEST_ERROR units, too.
+ulps of the answer. As in test_flow_reference.py, errors of up to LARGEST_ERROR units are allowed.
 """
 
 import math
@@ -36,12 +36,12 @@ def rule(count: int) -> reference.Rule:
 
 
 def exact_period(motion: Motion, count: int = 28) -> Any:
-    """Period of a motion: four quarters of the energy integral."""
+    """Four times the energy integral from the flat position to the turning point or tip."""
     return 4 * reference.RollingEllipse(reference.Scene(*motion), rule(count)).quarter_time
 
 
 def period_unit(motion: Motion) -> float:
-    """Effect of one rounding of each input, by central differences of a coarse rule, plus 2 ulp."""
+    """Effect of one rounding of each input, from central differences, plus two ulps."""
     small, total = mp.mpf("1e-18"), mp.mpf(0)
     for i, value in enumerate(motion):
         change = small * (abs(mp.mpf(value)) if PARAMETERS[i] != "theta" else 1)
@@ -70,7 +70,6 @@ def test_the_period_agrees_with_the_energy_integral(motion: Motion) -> None:
 
 
 def test_the_period_test_detects_a_speed_off_by_16_ulp() -> None:
-    """The bound is therefore tight."""
     motion = MOTIONS["rotation"]
     changed = (*motion[:5], motion[5] * (1 + 16 * EPS))
     off = float(abs(exact_period(changed) - exact_period(motion))) / period_unit(motion)
@@ -86,9 +85,9 @@ def test_the_period_is_infinite_at_rest_and_on_the_separatrix() -> None:
 
 
 @each_motion
-def test_a_fraction_of_a_half_turn_is_accurate_to_a_few_rounding_units(motion: Motion) -> None:
-    """The package computes these states by a power series, or by a move with or without a quarter
-    turn."""
+def test_states_within_a_half_turn_are_accurate_to_a_few_rounding_units(motion: Motion) -> None:
+    """The package uses a power series for short times, and otherwise the energy integral with or
+    without the time of a quarter turn."""
     scene, half = reference.Scene(*motion), float(exact_period(motion, 12)) / 2
     exact, changes = reference.motion(scene, rule(28)), reference.sensitivities(scene, rule(12))
     worst = 0.0
@@ -105,7 +104,7 @@ def test_a_fraction_of_a_half_turn_is_accurate_to_a_few_rounding_units(motion: M
 @pytest.mark.parametrize("radius", [1.0, 0.37, 1e-3, 250.0])
 @pytest.mark.parametrize("theta", [0.0, 0.7, -3.0, 1e4])
 def test_a_circle_turns_uniformly(radius: float, theta: float) -> None:
-    """An angle has at most two roundings of half an ulp each: one ulp of the larger result."""
+    """An angle has at most two roundings of half an ulp: in all, one ulp of the larger result."""
     for omega in (2.0, -0.3, 1e5):
         for t in (1e-9, 0.1, 7.7, -3.3, 1e6):
             angle, speed, x = flow(t, a=radius, b=radius, theta=theta, omega=omega)
@@ -158,8 +157,8 @@ def test_a_body_at_rest_stays_flat_or_on_its_tip(shape: tuple[float, float], qua
 @pytest.mark.parametrize("rounder", [1e-3, 1e-6, 1e-9])
 def test_a_nearly_round_body_released_near_its_tip_falls(rounder: float) -> None:
     """h' is smaller than a rounding of h, but the angle resolves the distance from the tip. omega
-    is distance * lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), up to the square
-    of the distance and the roundings of the angle and of the exponent."""
+    is distance * lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), up to terms in
+    the square of the distance and the rounding of the angle and of the exponent."""
     a, b, beside = 1.0 + rounder, 1.0, 2.0**-30
     with mp.workdps(40):
         off = mp.mpf(math.pi / 2 + beside) - mp.pi / 2

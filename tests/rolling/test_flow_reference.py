@@ -33,7 +33,6 @@ class Row(NamedTuple):
 
 @pytest.fixture(scope="module")
 def rows() -> list[Row]:
-    """All scenes of the table."""
     return [
         Row(
             line["kind"],
@@ -69,7 +68,7 @@ def among_many(rows: list[Row]) -> Iterator[Answer]:
 
 
 def error(value: float, exact: str, unit: float) -> float:
-    """Error in units, by exact decimal subtraction."""
+    """Error in units, from exact decimal subtraction."""
     off = table.difference(value, exact)
     return abs(off) / unit if off else 0.0  # a circle at rest is exact
 
@@ -77,7 +76,7 @@ def error(value: float, exact: str, unit: float) -> float:
 def errors(
     rows: list[Row], call: Callable[[list[Row]], Iterator[Answer]], rounding: float = 0.0
 ) -> np.ndarray:
-    """Errors in units (n, 3) of theta, omega, x; the unit of x includes a rounding of max(a, b)."""
+    """Errors in units (n, 3) of theta, omega, x; `rounding` max(a, b) is added to the unit of x."""
     found = []
     for row, values in zip(rows, call(rows), strict=True):
         of_x = row.units[2] + rounding * max(row.arguments["a"], row.arguments["b"])
@@ -100,17 +99,15 @@ def test_flow_is_accurate_to_a_few_rounding_units(
 
 
 @pytest.mark.parametrize("name", INPUTS)
-def test_changing_an_input_by_a_few_ulp_is_detected(rows: list[Row], name: str) -> None:
-    """The check detects a change of any single input by 16 ulp.
-
-    k^2 changes the motion least, by at most a fifth of a unit per ulp, so it needs 48 ulp. Distant
-    start angles are left out, because their ulp is not a small change.
+def test_a_change_of_one_input_by_tens_of_ulps_is_detected(rows: list[Row], name: str) -> None:
+    """k^2 changes the motion least, by at most a fifth of a unit per ulp, so it is changed by 48
+    ulps instead of 16. Distant start angles are left out, because their ulp is not a small change.
     """
     ulps = 48 if name == "gyration2" else 16
 
     def changed(row: Row) -> Row:
         value = row.arguments[name]
-        if value == 0:  # an ulp of 0 is no speed that the package accepts
+        if value == 0:  # the package refuses a speed as small as an ulp of 0
             return row
         return row._replace(arguments={**row.arguments, name: value + ulps * math.ulp(value)})
 

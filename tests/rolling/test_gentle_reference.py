@@ -1,8 +1,8 @@
-"""Motions on gentle slopes and slowly over tips against 40 digits (make_gentle_reference.py).
+"""Motions on gentle slopes, and slow ones over tips, against 40 digits (make_gentle_reference.py).
 
 The slopes range from 1e-18 to 1e-3. Motions start on or near a tip, or only just pass a tip, or
 just fail to. Every number has a unit: the effect of a relative change of 2.2e-16 of each input, and
-of 2.2e-16 rad of theta0, plus two ulp of the number itself.
+of 2.2e-16 rad of theta0, plus two ulps of the number itself.
 """
 
 from typing import Any
@@ -32,7 +32,6 @@ def start_of(row: Row) -> dict[str, Any]:
 
 
 def units(row: Row, names: tuple[str, ...]) -> Any:
-    """The units of some answers."""
     return np.array([float(row[f"unit_{n}"]) + 2 * np.spacing(abs(float(row[n]))) for n in names])
 
 
@@ -43,7 +42,7 @@ def errors(row: Row, values: Any, names: tuple[str, ...] = STATE) -> float:
 
 
 def test_the_table_covers_all_slopes_and_shapes() -> None:
-    """There are at least 300 cases, with all slopes, aspects, directions and names of the axes."""
+    """Over 300 cases cover all slopes, aspect ratios and directions, with either axis longer."""
     scenes = [table.scene_of(row) for row in ROWS]
     assert len(scenes) >= 300
     for low in range(-18, -3):
@@ -60,10 +59,10 @@ def test_the_table_covers_all_slopes_and_shapes() -> None:
 def test_the_flow_is_accurate_to_a_few_rounding_units(row: Row) -> None:
     """The bound is four units, for one time and for the last of many.
 
-    Near a tip W has the rounding error of W at the start, about the effect of rounding one input.
-    Some roundings of the time and of each answer add to it. The largest error was 1.6. An earlier
-    version, which computed W from the start alone with sin^2, exceeded the bound in 31 cases, by up
-    to 5e5 units.
+    Near a tip W = D omega^2/2 has the rounding error of W at the start, about the effect of
+    rounding one input. The rounding of the time and of each answer adds to it. The largest error
+    was 1.6. An earlier version, which computed W from the start alone with sin^2, exceeded the
+    bound in 31 cases, by up to 5e5 units.
     """
     start, t = start_of(row), float(row["t"])
     alone = rl.flow(t, **start)
@@ -97,12 +96,12 @@ def test_simulate_and_ends_are_accurate_to_a_few_rounding_units(row: Row) -> Non
 
 
 def forces_at(scene: rl.Scene, theta: float, omega: float) -> Any:
-    """N and F by Newton's law."""
+    """N and F from Newton's law."""
     return scene.mass * np.array(pushed(scene, theta, omega)[1:])
 
 
 def rounding_of_forces(scene: rl.Scene, theta: float, omega: float) -> Any:
-    """Changes of N and F by an ulp of the angle."""
+    """Changes of N and F if the angle changes by an ulp."""
     step = 1e-7
     change = forces_at(scene, theta + step, omega) - forces_at(scene, theta - step, omega)
     return np.abs(change) / (2 * step) * np.spacing(abs(theta))
@@ -124,9 +123,9 @@ def test_forces_are_accurate_to_a_few_rounding_units(row: Row) -> None:
 
 @each_row
 def test_rolling_ends_where_the_table_requires_all_available_friction(row: Row) -> None:
-    """If the friction is |F|/N at t, rolling ends at t or at an earlier time that needs as much.
+    """If friction is |F|/N at t, rolling ends at t or earlier, where it needs as much friction.
 
-    The end errs by four units of the margin mu N - |F| over its rate, and two ulp of the time.
+    The time may err by four units of the margin mu N - |F| over its rate, plus two ulps.
     """
     scene, t = table.scene_of(row), float(row["t"])
     normal, friction = float(row["normal"]), abs(float(row["friction"]))

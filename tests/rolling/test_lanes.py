@@ -1,4 +1,4 @@
-"""`flow` of many scenes in the lanes of a vector equals one scene at a time bit for bit.
+"""`flow` of many scenes in the lanes of a vector equals `flow` of one scene bit for bit.
 
 test_flow_reference.py compares the answers for one scene with 40 digits.
 """
@@ -47,7 +47,7 @@ def scenes(count: int, seed: int, *, ratio: float, half_turns: float) -> Columns
 
 
 def same(found: np.ndarray, expected: np.ndarray) -> bool:
-    return found.tobytes() == expected.tobytes()  # a comparison of bytes, since -0.0 is not 0.0
+    return found.tobytes() == expected.tobytes()  # bytes distinguish -0.0 from 0.0
 
 
 @each_level
@@ -142,7 +142,7 @@ WRONG = {
 @pytest.mark.parametrize("level", LEVELS)
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("name", WRONG)
-def test_an_invalid_value_is_reported_by_its_index(level: str, workers: int, name: str) -> None:
+def test_an_invalid_value_is_reported_with_its_index(level: str, workers: int, name: str) -> None:
     """The message names the first wrong number, even if later chunks or steps contain more."""
     motions = scenes(3000, 5, ratio=10.0, half_turns=10.0)
     motions[name][[700, 2900]] = WRONG[name]

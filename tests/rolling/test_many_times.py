@@ -88,13 +88,13 @@ def test_any_number_of_times_gives_correct_results(count: int) -> None:
     found = flow(times, **start)
     assert [values.shape for values in found] == [(count,)] * 3
     for values, several in zip(found, flow(np.append(times, np.ones(40)), **start), strict=True):
-        # a few ulp of three radians, radians a second or metres, the size of the motion
+        # angles, speeds and positions of the motion are about 10 in SI units
         assert np.all(np.abs(values - several[:count]) <= 32 * math.ulp(10.0))
 
 
 @pytest.mark.parametrize("place", [0, 5, 1500, 2002])
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300])
-def test_an_invalid_time_is_named_by_its_index(place: int, bad: float) -> None:
+def test_an_invalid_time_is_reported_with_its_index(place: int, bad: float) -> None:
     times = np.linspace(0.0, 3.0, 2003)
     times[place] = bad
     times[place + 1 :: 700] = math.nan  # the message names the first wrong time

@@ -1,7 +1,7 @@
-"""The path of the centre, in motions from near the tip and in stepped motions.
+"""The path of the centre, in motions that start near a tip and in motions integrated in steps.
 
-The centre of a rolling body moves by the integral of h dtheta, so x follows from the two angles
-alone. Legendre's elliptic integral gives it in 30 digits.
+The centre of a rolling body moves by the integral of h dtheta, so x follows from the first and the
+last angle alone. Legendre's elliptic integral gives x to 30 digits.
 """
 
 import math
@@ -35,7 +35,7 @@ def path(theta: float, a: float, b: float) -> mp.mpf:
 
 
 def excess(start: Start, t: float, state: State) -> float:
-    """Error of x. The unit is the effect of roundings of theta and time, plus four ulp of x."""
+    """Error of x, in units of the effect of rounding theta and the time, plus four ulps of x."""
     a, b, theta0, _ = start
     theta, omega, x = state
     with mp.workdps(30):
@@ -46,7 +46,7 @@ def excess(start: Start, t: float, state: State) -> float:
 
 
 def starts(count: int) -> Iterator[Start]:
-    """Starts with either axis longer, on the tip or near it, at 1e-300 to 1 rad/s each way."""
+    """Starts on or near a tip, with either axis longer, at 1e-300 to 1 rad/s either way."""
     rng = random.Random(30)
     for i in range(count):
         a = 10 ** rng.uniform(-1, 1)

@@ -1,6 +1,6 @@
-"""The equation of rolling that the integrators solve, level and on a slope.
+"""The equation of rolling that the integrators solve, on level ground and on slopes.
 
-The judge is Lagrange's equation with the kinetic energy D theta'^2/2 and the potential energy
+The reference is Lagrange's equation with the kinetic energy D theta'^2/2 and the potential energy
 V = g (h cos alpha - x sin alpha), x' = h, whose derivatives are numerical, in 40 digits:
     D theta'' + D' theta'^2/2 + V' = 0.
 """
@@ -64,7 +64,7 @@ def lagrange(scene: Scene, theta: float, omega: float) -> tuple[Motion, Motion]:
 def test_the_equation_and_its_jacobian_agree_with_lagrange(
     shape: tuple[float, float], slope: float
 ) -> None:
-    """The bound is 8 ulp of the terms of a sum: some ten roundings, sin and cos among them."""
+    """The bound is 8 ulps of the terms: some ten roundings, including those of sin and cos."""
     scene = Scene(*shape, gravity=3.7, slope=slope)
     unit = math.sqrt(scene.gravity / max(shape))
     for theta in (*ANGLES, *FAR_ANGLES):
@@ -79,7 +79,7 @@ def test_the_equation_and_its_jacobian_agree_with_lagrange(
 
 
 def test_a_wrong_equation_is_detected() -> None:
-    """The same scene with 1e-12 more gravity, slope or k^2 is thousands of ulp away."""
+    """A change of 1e-12 in gravity, slope or k^2 changes the acceleration by over 500 ulps."""
     scene = Scene(2.0, 1.0, slope=0.3)
     changes: list[dict[str, Any]] = [
         {"gravity": scene.gravity * (1 + 1e-12)},
@@ -95,7 +95,7 @@ def test_a_wrong_equation_is_detected() -> None:
 
 
 def test_the_public_equation_agrees_with_the_core_bit_for_bit(shape: tuple[float, float]) -> None:
-    """The rates of theta, omega and, in a third column, of x, which is h omega."""
+    """If y contains x as a third row, its rate is h omega."""
     scene = Scene(*shape, slope=0.2)
     theta, omega = np.array([0.3, 1.2, 2.0, -0.9]), np.array([1.0, -2.0, 0.5, 3.0])
     acceleration, _ = _core.rolling_equation(scene.core, theta, omega)
@@ -109,9 +109,8 @@ def test_the_public_equation_agrees_with_the_core_bit_for_bit(shape: tuple[float
 @pytest.mark.parametrize("slope", SLOPES)
 @pytest.mark.parametrize(("a", "b", "gyration2"), [(1.0, 2e-3, 1e-4), (0.05, 3.0, 0.02), (2, 1, 1)])
 def test_forces_follow_from_newtons_law(a: float, b: float, gyration2: float, slope: float) -> None:
-    """N and F follow from Newton's law for the centre, in 40 digits. The bound is a few roundings
-    of the terms over D of which they are sums: where a thin body is light, both sides are far
-    smaller than the accelerations."""
+    """The forces are computed from Newton's law for the centre in 40 digits. The bound is 16 ulps
+    of the terms, divided by D, that add up to N and F."""
     rng = np.random.default_rng(6)
     for theta, omega in zip(rng.uniform(-4, 4, 60), rng.normal(0, 3, 60), strict=True):
         scene = Scene(a, b, inertia=gyration2, slope=slope, theta=float(theta), omega=float(omega))

@@ -37,7 +37,7 @@ def answer(function: Callable[..., Any], *given: Any, **named: Any) -> Any:
 
 @_core.takes_floats
 def probe(t, *, a, b, theta, omega, gravity=9.81, gyration2=None, slope=0.0, workers=1):  # type: ignore[no-untyped-def]
-    """A function in place of `flow` that records its calls."""
+    """A function in place of `flow` whose result shows that it was called."""
     return ("the long way",)
 
 
@@ -96,7 +96,7 @@ MORE: dict[str, tuple[tuple[Any, ...], dict[str, Any]]] = {
 
 
 @pytest.mark.parametrize("case", MORE)
-def test_all_other_calls_have_the_answers_of_the_python_function(case: str) -> None:
+def test_all_other_calls_give_the_answers_of_the_python_function(case: str) -> None:
     given, named = MORE[case]
     assert answer(rl.flow, *given, **named) == answer(LONG, *given, **named)
 

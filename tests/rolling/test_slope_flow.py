@@ -1,4 +1,4 @@
-"""Exact rolling on slopes beyond the table: many half turns, long climbs, wells, circles, edges.
+"""Exact rolling on slopes beyond the reference table: many half turns, long climbs, round bodies.
 
 The references share no formula with the package. They use mpmath's Hurwitz zeta function and its
 quadrature of the energy integral, without adding up half turns.
@@ -21,7 +21,7 @@ DIGITS = 20
 
 
 class Energy:
-    """D and W = D omega^2/2 over the angle, from the scene's own numbers."""
+    """D and W = D omega^2/2 as functions of the angle, from the numbers of the scene."""
 
     def __init__(self, scene: rl.Scene) -> None:
         self.a, self.b = mp.mpf(scene.a), mp.mpf(scene.b)
@@ -49,7 +49,7 @@ class Energy:
         return self.along * self.path(mp.pi)
 
     def time_of(self, half_turns: Any) -> Any:
-        """Time of half turns downhill: integral of Hurwitz zeta functions over one half turn."""
+        """Time of `half_turns` downhill: an integral of Hurwitz zeta functions over one of them."""
         gain = self.gain()
 
         def rate(angle: Any) -> Any:
@@ -78,8 +78,8 @@ MANY = product(list(DOWNHILL)[:3], (40, 1000, 10**6, 10**9))
 
 @pytest.mark.parametrize("name, half_turns", [*MANY, ("from its tip", 1000)])
 def test_a_body_stays_accurate_over_many_half_turns_downhill(name: str, half_turns: int) -> None:
-    """After n half turns the body has the same orientation as at the start, and its W has grown by
-    n w.
+    """After n half turns the body has the same orientation as at the start, and W has grown by n
+    times the gain of a half turn.
 
     The simulated time is rounded by half an ulp, and the quadrature has a few roundings. Together
     they act like a change of the inputs by 8 roundings (at most 3 were observed).
@@ -101,7 +101,7 @@ def test_a_body_stays_accurate_over_many_half_turns_downhill(name: str, half_tur
         )  # fmt: skip
         expected += speed * off
         allowed = 8 * EPS * (float(speed) * t + float(expected))
-        # omega depends on the angle: theta'' times the rounding of the time
+        # the rounding of the time changes omega by theta'' times as much
         bend = max(scene.a, scene.b) / min(scene.a, scene.b)
         for theta, omega in ((found.theta[0], found.omega[0]), flow[:2]):
             assert abs(float(theta - expected)) < allowed
@@ -111,12 +111,11 @@ def test_a_body_stays_accurate_over_many_half_turns_downhill(name: str, half_tur
 @pytest.mark.parametrize("slope", [1e-3, 1e-2, 0.05])
 @pytest.mark.parametrize("ratio", [0.9, 0.3, 1e-2])
 def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) -> None:
-    """Reversing a motion in time at any of its states retraces it, uphill and back.
+    """The reversed state at t reaches the reversed start after another t.
 
-    The reversed state at t reaches the reversed start after another t. The package computes this by
-    a sum uphill, by series over the top and by a sum downhill. A rounding of the state in between
-    changes the energy and moves the end, in proportion to the time since then over the time scale
-    of half a turn: 64 roundings of the path are allowed.
+    The package sums half turns uphill and downhill, and uses power series over the top. Rounding
+    the state at t changes the energy and hence the end, in proportion to the number of half turns:
+    64 roundings of the path are allowed.
     """
     scene = rl.Scene(1.0, ratio, slope=slope, theta=0.4, omega=-8.0)
     whole = rolled(scene, [0.0, 2e4])
@@ -144,11 +143,8 @@ def test_a_body_returns_to_its_start_after_twice_the_time_to_its_turning_point()
 @pytest.mark.parametrize("omega", [-8.0, 8.0], ids=["up", "down"])
 @pytest.mark.parametrize("way", [1e-5, 0.1])
 def test_a_short_path_stays_accurate(way: float, omega: float) -> None:
-    """theta and x of a short path agree with the energy integral, up a long climb and down.
-
-    The bound is 4 roundings of the path and of the geometry at the start (at most 0.7 was
-    observed). A path computed from half a turn further up had an error of 1e-16 m.
-    """
+    """The bound is 4 roundings of the path and of the geometry at the start (at most 0.7 was
+    observed). A path computed from half a turn further up had an error of 1e-16 m."""
     scene = rl.Scene(1.0, 0.5, slope=1e-3, theta=0.4, omega=omega)
     with mp.workdps(25):
         energy = Energy(scene)
@@ -204,7 +200,7 @@ def assert_keeps_energy(found: rl.Trajectory) -> None:
 @pytest.mark.parametrize("ratio", [1e-3, 1 - 1e-12, 1e3])
 @pytest.mark.parametrize("slope", [1e-300, 1e-9, -0.5, 1.5])
 def test_all_shapes_conserve_energy(ratio: float, slope: float) -> None:
-    """The energy is constant over nine decades of time."""
+    """The times span six decades."""
     scene = rl.Scene(ratio, 1.0, slope=slope, theta=0.7, omega=0.4)
     assert_keeps_energy(rolled(scene, np.concatenate([[0.0], np.logspace(-2, 4, 60)])))
 
@@ -213,7 +209,7 @@ def test_all_shapes_conserve_energy(ratio: float, slope: float) -> None:
 @pytest.mark.parametrize("slope", [1e-8, 1e-4, -0.02, 0.3])
 @pytest.mark.parametrize("half_turns", [30, 1000, 1e6, 1e9])
 def test_a_climb_conserves_energy(ratio: float, slope: float, half_turns: float) -> None:
-    """The energy is constant uphill and downhill; half turns near the top take longest."""
+    """The samples cover the climb and the descent."""
     height = half_turns * math.pi * max(ratio, 1.0) * math.sin(abs(slope)) + abs(1 - ratio)
     speed = math.sqrt(9.81 * height / rl.Scene(ratio, 1.0).gyration2)
     scene = rl.Scene(ratio, 1.0, slope=slope, omega=-math.copysign(speed, slope))
@@ -260,8 +256,8 @@ def test_a_motion_that_does_not_repeat_has_no_period() -> None:
 
 
 def test_a_nearly_round_body_is_not_driven_by_rounding() -> None:
-    """A body whose tip is higher by one ulp and which hardly moves is driven by gravity times h',
-    at most b - a, over the inertia about the contact, at least a^2."""
+    """The semi-axes differ by an ulp. The acceleration is gravity times h', which is at most b - a,
+    over the inertia about the contact, which is at least a^2."""
     a, b, t = 7.374404490252059, 7.37440449025206, 2.5
     scene = rl.Scene(a, b, theta=0.3, omega=-5.6e-51, friction=0.02, slope=5e-324)
     moved = abs(rl.simulate(scene, t).theta[-1] - 0.3)
@@ -278,8 +274,7 @@ def test_a_nearly_round_body_is_not_driven_by_rounding() -> None:
     ids=["tall", "flat"],
 )  # fmt: skip
 def test_a_nearly_round_body_can_be_certified(scene: rl.Scene) -> None:
-    """Only roundings of the height drive the body. Its motion is still a single stretch, and omega
-    changes by no more than gravity and the height differences allow."""
+    """The semi-axes differ by an ulp or two, so that gravity hardly changes omega."""
     t = 0.1 / abs(scene.omega)
     motion = rl.simulate(scene, t, model="rolling")
     fall = 2 * scene.gravity * abs(scene.a - scene.b) / min(scene.a, scene.b) ** 2
@@ -299,7 +294,7 @@ def test_the_flow_on_a_slope_equals_simulate(omega: float) -> None:
 
 
 def drawn_on_slopes(rng: np.random.Generator, n: int) -> dict[str, Any]:
-    """Bodies that run down or climb: round, thin or tall, on gentle or steep slopes."""
+    """Bodies that roll down or climb: round, thin or tall, on gentle or steep slopes."""
     ratio = np.where(
         rng.random(n) < 0.5, 10 ** rng.uniform(-3, 0, n), 1 - 10 ** rng.uniform(-9, -1, n)
     )
@@ -315,9 +310,9 @@ def drawn_on_slopes(rng: np.random.Generator, n: int) -> dict[str, Any]:
 
 
 def test_the_flow_up_and_down_slopes_agrees_with_power_series() -> None:
-    """The package computes runs and climbs from the energy alone; the power series solve the
-    equation of motion. Both agree to within the effect of a rounding of each argument plus two of
-    the state."""
+    """The package uses the energy alone, uphill and downhill; the power series solve the equation
+    of motion. Both agree to within the effect of a rounding of each argument plus two of the
+    state."""
     asked = drawn_on_slopes(np.random.default_rng(0), 300)
     t = np.minimum(10 ** np.random.default_rng(1).uniform(-3, 1, 300), 6 / np.abs(asked["omega"]))
     found = np.stack(rl.flow(t, **asked))
@@ -330,7 +325,6 @@ def test_the_flow_up_and_down_slopes_agrees_with_power_series() -> None:
 
 
 def test_the_flow_at_many_times_equals_that_at_single_times_bit_for_bit() -> None:
-    """Times between the end of the first piece and the mirror image of the start are included."""
     rng = np.random.default_rng(5)
     for _ in range(120):
         a, b = np.exp(rng.uniform(-1, 1, 2)).tolist()
@@ -338,7 +332,7 @@ def test_the_flow_at_many_times_equals_that_at_single_times_bit_for_bit() -> Non
             "a": a, "b": b, "theta": rng.uniform(-3, 3), "slope": rng.uniform(-0.1, 0.1),
             "omega": rng.choice([rng.uniform(-6, 6), rng.uniform(-0.02, 0.02)]),
         }  # fmt: skip
-        dense = np.linspace(0.0, rng.uniform(1, 3), 40)  # several in each part of a run
+        dense = np.linspace(0.0, rng.uniform(1, 3), 40)  # several in each piece of a motion
         times = np.concatenate([rng.uniform(-5, 40, 6), rng.uniform(-0.5, 1, 12), dense])
         single = [rl.flow(t, **asked) for t in times.tolist()]
         assert np.array_equal(rl.flow(times, **asked), np.transpose(single))

@@ -1,8 +1,8 @@
 """Rolling on a slope against 30 digits (reference/make_slope_reference.py).
 
 Every scene has three times and a unit for each value: the effect of a relative change of 2.2e-16 of
-each input. A method is judged by errors in these units: by the smallest change of the inputs that
-would explain its answer.
+each input. An error in these units is the smallest change of the inputs, in multiples of 2.2e-16,
+that would explain it.
 """
 
 import math
@@ -82,7 +82,7 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
         found = rl.simulate(motion.scene, motion.times, model="rolling", **settings)
     columns = found.theta, found.omega, found.x, found.normal_force, found.friction_force
     values = np.stack(columns, axis=1).tolist()
-    # an ulp is added, since the nearest double is half an ulp off
+    # an ulp is added, because even the nearest double may be half an ulp off
     units = motion.units + np.spacing(np.abs(motion.values))
     units[:, 2] += motion.longer * motion.units[:, 0]
     found_errors: NDArray[np.float64] = table.differences(values, motion.answers) / units
@@ -90,7 +90,7 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
 
 
 def reach_of_series(motion: Motion) -> float:
-    """Time R in which the fastest turn covers the distance to the nearest complex singularity [s].
+    """Time R [s] in which the fastest rotation reaches as far as the nearest complex singularity.
 
     The singularity in theta is at k^2 + h^2 + h'^2 = 0 beside a flat side; energy bounds omega. A
     step far below R resolves everything, even the flat side of a thin ellipse that flicks over it.
@@ -108,7 +108,7 @@ def reach_of_series(motion: Motion) -> float:
 
 
 @each_motion
-def test_exact_is_accurate_to_a_few_rounding_errors(motion: Motion) -> None:
+def test_the_exact_method_is_accurate_to_a_few_rounding_errors(motion: Motion) -> None:
     """theta, omega and x err by at most four units; the forces follow from theta and omega.
 
     A state takes some hundred series, each with its own rounding, and the energy keeps omega
@@ -150,7 +150,7 @@ def test_gauss_is_accurate_to_within_rounding(motion: Motion) -> None:
     assert errors(motion, method="gauss", stages=4, step=step).max() < 32
 
 
-def test_radau_errors_are_as_its_order_predicts() -> None:
+def test_errors_of_radau_are_as_small_as_its_order_predicts() -> None:
     """Radau with steps of R/8 errs by 0.0012 (h/R)^5 per passage of the flat side.
 
     The error of a step is h^6 y^(6) / 7200, with y^(6) = 6!/r^6 at distance r of the singularity.
@@ -171,12 +171,9 @@ def test_radau_errors_are_as_its_order_predicts() -> None:
 @pytest.mark.parametrize(
     "name", ["a", "b", "mass", "inertia", "gravity", "slope", "theta", "omega"]
 )
-def test_a_small_change_of_an_input_is_detected(name: str) -> None:
-    """The check detects a change of any single input by a millionth in every scene.
-
-    Eight tolerances correspond to a change of all inputs together by 8e-13 |theta|. A slope of a
-    few milliradians hardly affects a fast spin, but a millionth of it still adds 14 tolerances.
-    """
+def test_a_change_of_any_input_by_a_millionth_is_detected(name: str) -> None:
+    """Eight tolerances correspond to a change of all inputs together by 8e-13 |theta|. A slope of a
+    few milliradians hardly affects a fast spin, but a millionth of it still adds 14 tolerances."""
     changed = 0
     for motion in MOTIONS:
         value = getattr(motion.scene, name)

@@ -26,10 +26,10 @@ class Equilibrium(NamedTuple):
 
 
 def equilibria(scene: rl.Scene) -> tuple[Equilibrium, Equilibrium]:
-    """The stable equilibrium and the unstable one downhill of it, by the eccentric angle phi.
+    """The stable equilibrium and the unstable one downhill of it, from the eccentric angle phi.
 
-    By (3) of reference/make_slope_reference.py sin 2 phi = 2 a b tan(slope)/c^2, and about it
-    J rate^2 = g w c^2 cos 2 phi cos(slope)/(a b).
+    By (3) of reference/make_slope_reference.py sin 2 phi = 2 a b tan(slope)/c^2, and about the
+    equilibrium J rate^2 = g w c^2 cos 2 phi cos(slope)/(a b).
     """
     long, short = max(scene.a, scene.b), min(scene.a, scene.b)
     c2 = (long - short) * (long + short)
@@ -48,7 +48,7 @@ def equilibria(scene: rl.Scene) -> tuple[Equilibrium, Equilibrium]:
 
 @pytest.mark.parametrize("row", ROWS, ids=[str(i) for i in range(len(ROWS))])
 def test_rocking_is_accurate_to_a_few_rounding_errors(row: dict[str, str]) -> None:
-    """Rocking errs by at most eight units and two ulp of each answer.
+    """The bound is eight units, after two ulps of the answer are added to each unit.
 
     A half swing takes a few series, each with a few roundings of time, angle and omega; the phase
     after any number of swings has the roundings of the period. The largest error was 0.8 units.
@@ -76,11 +76,11 @@ def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
     """A body that starts towards or away from the rim swings like one that starts at rest farther
     inside.
 
-    The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the least value d (1 -
-    share^2)^(1/2), up to its square and an ulp of theta; the period, 2 log(1/d)/rate plus a
-    constant, may differ by as much. After a period the body is at its start, up to an ulp and to
-    the rounding of the period. An earlier method, which crossed the well by series, gave periods
-    with errors of 16 %, and bodies that left the well.
+    The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the minimum d (1 -
+    share^2)^(1/2), up to terms in d^2 and an ulp of theta. These errors change the period, 2
+    log(1/d)/rate plus a constant. After a period the body is back at its start, up to an ulp and
+    the rounding of the period. An earlier method, which crossed the well with power series, gave
+    periods with errors of 16 %, and bodies that left the well.
     """
     (lying, _), (upright, rate) = equilibria(scene)
     inside = math.copysign(distance, lying - upright)
@@ -96,8 +96,8 @@ def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
 
 
 def test_small_rocking_at_many_times_equals_that_at_single_times() -> None:
-    """The bits agree in a table, alone and in the model "contact"; the body turns back every half
-    period."""
+    """A sample has the same bits in an array, alone and in the model "contact". The body turns back
+    every half period."""
     scene = rl.Scene(2.0, 1.0, slope=0.2, friction=0.5)
     scene = scene.replace(theta=equilibria(scene)[0].theta + 1e-9)
     half = rl.period(scene) / 2

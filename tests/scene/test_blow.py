@@ -1,4 +1,4 @@
-"""The state just after an applied impulse, against the collision law followed along its path.
+"""The state just after an applied impulse, against the collision law along its impulse path.
 
 The law is the one in `test_collision.py`, up to the end of compression: an applied impulse has no
 restitution.
@@ -135,7 +135,7 @@ def test_a_horizontal_push_with_unlimited_friction_makes_the_body_roll(push: flo
 
 
 def test_unlimited_friction_stops_an_initial_slip_at_once() -> None:
-    """The impulse m (h omega - x_dot) alone gives D omega = h x_dot, lying flat with h' = 0."""
+    """For a flat body (h' = 0) the impulse m (h omega - x_dot) alone gives D omega = h x_dot."""
     found = Scene(2.0, 1.0, mass=2.0, x_dot=4.5).initial_state
     assert found.mode == Mode.ROLLING
     assert found.omega == pytest.approx(1.0 * 4.5 / 2.25, rel=4 * EPS)
@@ -162,9 +162,9 @@ MARGINS = ((1 - 1e-6, True), (1.0, True), (1 + 1e-6, False))
 def test_a_blow_that_misses_the_body_is_rejected(
     axes: tuple[float, float], theta: float, share: float, meets: bool
 ) -> None:
-    """The line of action touches the body at its farthest point across the blow, the farthest of
-    many points on the boundary. These points are 3.1e-4 apart in the angle t of (a cos t, b sin t),
-    and the extent is a cosine of t, so it is short by at most (1.6e-4)^2/2 = 1.2e-8."""
+    """At a share of 1 the line of action passes through the farthest of many boundary points, which
+    are 3.1e-4 apart in the angle t of (a cos t, b sin t). The distance is a cosine of t, so it is
+    too short by at most (1.6e-4)^2/2 = 1.2e-8."""
     a, b = axes
     rim = np.linspace(0.0, 2 * math.pi, 20_001)
     u, v = a * np.cos(rim), b * np.sin(rim)
@@ -184,7 +184,7 @@ def test_a_blow_that_misses_the_body_is_rejected(
 
 def test_only_a_zero_blow_may_miss_the_body() -> None:
     assert Scene(2.0, 1.0, impulse=Impulse(dx=5.0)).initial_state.omega == 0
-    for size in (5e-324, 1e50):  # a blow of any size has a line
+    for size in (5e-324, 1e50):  # any other blow has a line of action
         with pytest.raises(ValueError, match=r"at most 2\.0 \[m\] from its centre .*, got 5\.0$"):
             Scene(2.0, 1.0, impulse=Impulse(jx=0.0, jz=size, dx=5.0))
 

@@ -42,7 +42,7 @@ def hits(count: int, seed: int, bounces: int = 20, **given: Any) -> list[Hit]:
 
 
 def impulses(hit: Hit) -> tuple[float, float]:
-    """Impulse of the ground on the body, by Newton's law for the centre."""
+    """Impulse of the ground on the body, from Newton's law for the centre."""
     before, after = hit.event.state_before, hit.event.state_after
     mass = hit.scene.mass
     return mass * (after.x_dot - before.x_dot), mass * (after.z_dot - before.z_dot)
@@ -55,10 +55,10 @@ def limited() -> list[Hit]:
 
 
 def test_impacts_agree_with_integration_along_the_impulse_path(limited: list[Hit]) -> None:
-    """Some hundred roundings are allowed, magnified by solving for the reaction. Speeds are rounded
-    relative to the body's velocity, and e > 0 needs a square root of the work, so errors are
-    absolute: relative to the impulse that stops the body. The angle, thousands of radians after
-    many turns, is rounded too."""
+    """300 roundings are allowed, magnified by solving for the reaction. Speeds are rounded relative
+    to the body's velocity, and e > 0 needs a square root of the work, so errors are relative to the
+    impulse that stops the body. The angle, thousands of radians after many turns, is rounded too.
+    """
     assert len(limited) > 800
     for hit in limited:
         before, state = hit.before, hit.event.state_before
@@ -115,8 +115,8 @@ def velocities_after(hit: Blow) -> list[mp.mpf]:
 
 
 def test_impacts_of_light_fast_turning_bodies_stay_accurate() -> None:
-    """Velocities agree with the pieces in 40 digits. The unit is the effect of 2.2e-16 of each
-    number plus two ulp of the answer. omega h is up to 1e4 times the centre's speed."""
+    """The unit is the effect of a relative change of 2.2e-16 in each number, plus two ulps of the
+    answer. omega h is up to 1e4 times the centre's speed."""
     rng = np.random.default_rng(30)
     worst, seen = 0.0, 0
     change = mp.mpf("1e-20")
@@ -149,7 +149,7 @@ def test_impacts_of_light_fast_turning_bodies_stay_accurate() -> None:
 
 
 def test_no_impact_gains_energy() -> None:
-    """1e5 impacts gain no energy. Three velocities are rounded, squared and summed: 8 roundings."""
+    """Three velocities are rounded, squared and summed: 8 roundings."""
     worst = max(
         (kinetic_energy(hit.scene, hit.event.state_after) / before - 1)
         for hit in hits(100_000, 5, bounces=300)
@@ -207,7 +207,7 @@ def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
         rounding = (100 + abs(state.theta)) * EPS * kinetic_energy(hit.scene, state)
         assert hit.event.state_after.energy_lost == pytest.approx(-work, abs=rounding)
         lost = hit.event.energy_before - hit.event.energy_after
-        assert lost == pytest.approx(-work, abs=10 * rounding)  # heights have energies, too
+        assert lost == pytest.approx(-work, abs=10 * rounding)  # with potential energy
         assert hit.event.state_after.energy_lost >= 0 == hit.event.state_before.energy_lost
         lossless += abs(work) < rounding
     assert 0 < lossless < 300

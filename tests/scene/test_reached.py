@@ -1,4 +1,4 @@
-"""States that motions reach beyond the limits of input can be continued, saved and read."""
+"""States beyond the limits of input, which motions can reach, can be continued, saved and read."""
 
 import copy
 import math
@@ -50,7 +50,7 @@ def test_a_state_after_1e14_half_turns_can_be_continued(
     times = np.linspace(0.0, 1e-7, 5)
     on = rl.simulate(reached, times, model="rolling")
     assert on.theta[0] == reached.theta and np.all(np.isfinite(on.x))
-    # theta is a double: its changes are whole ulp. In so short a time gravity changes nothing.
+    # theta changes by whole ulps. In so short a time gravity has no effect.
     turned, ulp = on.theta[-1] - on.theta[0], np.spacing(reached.theta)
     lasts = [inertial_time(reached, turned + off) for off in (-ulp, ulp)]
     assert lasts[0] <= times[-1] <= lasts[1]
@@ -75,8 +75,8 @@ def test_energy_gained_downhill_may_exceed_the_input_limit() -> None:
     for change in ({"omega": reached.omega}, {"impulse": Impulse(jx=1.0)}):
         with pytest.raises(ValueError, match=r"^omega must be at most .* for this body, got"):
             reached.replace(**change)
-    # No ground holds the body: it slips, or it leaves the ground where c = g cos(alpha) + h''
-    # omega^2 is negative. The last bit of theta, a quarter of a radian, decides.
+    # The body cannot roll: it slips, or it leaves the ground if c = g cos(alpha) + h'' omega^2 is
+    # negative, which depends on the last bit of theta, a quarter of a radian.
     h = math.hypot(2.0 * math.sin(reached.theta), math.cos(reached.theta))
     c = reached.gravity * math.cos(reached.slope) + (4.0 / h**3 - h) * reached.omega**2
     first = rl.Outcome.LOSES_CONTACT if c < 0 else rl.Outcome.SLIPS

@@ -136,8 +136,8 @@ def test_a_slope_that_looks_like_degrees_is_questioned(slope: float, asked: bool
 def test_infinite_friction_prevents_slip_unless_the_ground_would_have_to_pull(
     impulse: Impulse | None,
 ) -> None:
-    """At 0.9 rad and 3 rad/s the ground would have to pull, so the limiting slide starts. With a
-    friction of 0.01 the message says that friction is too small."""
+    """At 0.9 rad and 3 rad/s the ground would have to pull, so the body slides, as in the limit of
+    large friction. With a friction of 0.01 the message says that friction is too small."""
     given: dict[str, Any] = {"theta": 0.9, "omega": 3.0, "impulse": impulse}
     limit = scene(**given).initial_state
     assert limit.mode is Mode.SLIDING
@@ -200,7 +200,7 @@ def test_a_start_within_8_ulp_of_rolling_rolls_exactly(theta: float, count: int)
     state = exact.initial_state
     for name in ("z", "x_dot", "z_dot"):
         if getattr(state, name) == 0.0:
-            continue  # an ulp of 0 is no length
+            continue  # an ulp of 0 is too small
         given = ulps_above(getattr(state, name), count)
         near = scene(theta=theta, omega=1.3, **{name: given})
         assert near.initial_state == state, name

@@ -29,7 +29,7 @@ LINKS = [
 
 
 def bits(scene: Scene) -> str:
-    """All arguments, with -0.0 distinct from 0.0."""
+    """The arguments of a scene as text, which distinguishes -0.0 from 0.0."""
     return repr([getattr(scene, field.name) for field in fields(scene)])
 
 
@@ -91,14 +91,14 @@ def test_an_older_link_gives_the_scene_of_the_page(link: str, given: dict[str, f
     assert Scene.from_json(f"{struck}&{link}").impulse == Impulse.press(48.0, 1.5)
 
 
-def test_a_link_from_before_rolling_resistance_is_read() -> None:
+def test_an_old_link_without_rolling_resistance_is_read() -> None:
     link = (TESTS / "export" / "old_files" / "link.txt").read_text(encoding="utf-8")
     assert Scene.from_json(link) == Scene(
         2.0, 1.0, slope=0.01, friction=1.0, restitution=0.01, theta=0.05, omega=5.2
     )
 
 
-def test_a_link_may_use_the_names_of_the_arguments_of_scene() -> None:
+def test_a_link_may_use_the_argument_names_of_scene() -> None:
     link = "#a=2&b=1&inertia=6.25&z=1.5&x_dot=1e-7&friction=inf&jx=0&jz=0&t=6&lang=en"
     given = Scene(2.0, 1.0, inertia=6.25, z=1.5, x_dot=1e-7, impulse=Impulse())
     assert Scene.from_json(link) == given
@@ -110,7 +110,7 @@ def test_the_error_for_an_unknown_key_suggests_the_right_one() -> None:
             Scene.from_json(text)
 
 
-def test_a_warning_shows_the_blows_of_a_link_that_a_scene_cannot_contain() -> None:
+def test_a_warning_shows_the_blows_that_a_scene_cannot_take_from_a_link() -> None:
     with pytest.warns(UserWarning, match=r": pass 2,0,-1,0\.5,0 to simulate as blows=$"):
         scene = Scene.from_json("#a=2&b=1&t=5&blows=2,0,-1,0.5,0")
     assert scene == Scene(2.0, 1.0) == Scene.from_json("#a=2&b=1&t=5&blows=")

@@ -4,7 +4,7 @@ A flight and the impact that ends it map a state y after an impact to the next o
 
     z - h = 0 at tau,   J = -(1 + e) u/(1 + h'^2/k^2),   z_dot += J,   omega -= h' J/k^2
 
-with the speed u = z_dot - h' omega. Their derivatives are differences of 1e-25 in 60 digits. With T
+with the speed u = z_dot - h' omega. Derivatives come from differences with steps of 1e-25. If T is
 the time of the last impact, the state at a fixed time changes by the dy of its flight less y' dT.
 An arc starts in the state of the motion (`own`), or where the previous arc ends in 60 digits.
 """
@@ -33,7 +33,7 @@ def _flown(y: list[Any], t: Any, p: dict[str, Any]) -> list[Any]:
 
 
 def _landed(y: list[Any], guess: float, p: dict[str, Any]) -> list[Any]:
-    """The state after the next impact, and the time until it."""
+    """The state after the next impact, and the time until then."""
 
     def gap(t: Any) -> Any:
         z, theta, _, _ = _flown(y, t, p)

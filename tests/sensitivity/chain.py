@@ -1,4 +1,4 @@
-"""Derivatives of a motion by its variational equation and the jumps at its events.
+"""Derivatives of a motion from its variational equation and the jumps at its events.
 
 S = dy/dp obeys S' = f_y S + f_p along an arc. At an event g(y, p) = 0 with the map R(y, p),
 
@@ -59,7 +59,7 @@ def rates(mode: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
 
 
 def guard(kind: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
-    """The function that vanishes at an event; `side` is the sign of the slip that a SLIP starts."""
+    """The function that vanishes at an event; `side` is the sign of the slip after a SLIP."""
     h, _, h2 = support(y[2], p)
     into = p["gravity"] * np.cos(p["slope"])
     if kind == "IMPACT":
@@ -99,7 +99,7 @@ def collided(y: Any, p: Mapping[str, Any]) -> Any:
 
 
 def by_differences(y: Any, p: Mapping[str, Any], wrt: list[str]) -> tuple[Any, Any]:
-    """Derivatives of the collision, of sixth order with steps of 1e-5: errors of some 1e-11."""
+    """Derivatives of the collision from differences of sixth order, with errors of some 1e-11."""
     weights = np.array([-1, 9, -45, 45, -9, 1]) / 60e-5
     shifts = 1e-5 * np.array([-3, -2, -1, 1, 2, 3])
     p = {name: float(np.real(value)) for name, value in p.items()}
@@ -196,7 +196,7 @@ def chain(motion: Trajectory, wrt: list[str]) -> tuple[Any, Any]:
 
 
 def _side(state: Any, p: Mapping[str, Any]) -> int:
-    """The sign of the slip of a sliding state; slip starts against the friction of rolling."""
+    """The sign of the slip of a sliding state, opposite to the friction of rolling at the start."""
     if state.mode.name != "SLIDING":
         return 0
     y = np.array([state.x, state.z, state.theta, state.x_dot, state.z_dot, state.omega])

@@ -4,11 +4,11 @@ Each arc starts in the state that the motion has after the event before it. The 
 is integrated along the arc, and at an event (R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations
 of Non-Smooth Mechanical Systems (2004), ch. 7)
 
-    S+ = R_y S + (f+ - R_y f) g_y S / (g_y f),
+    S+ = R_y S + (f+ - R_y f) g_y S / (g_y f).
 
-Derivatives come from complex steps, also within the pieces of a collision, and never from
-differences. Columns are made orthonormal at events; since a QR decomposition is unique, the times
-at which this is done do not affect the result.
+Derivatives come from complex steps, even within the pieces of a collision. Columns are made
+orthonormal at events. A QR decomposition is unique, so the choice of these times does not affect
+the result.
 """
 
 from typing import Any
@@ -60,7 +60,7 @@ def collided(y: Any, p: Any) -> Any:
 
 
 def _stretch(mode: str, side: int, y: Any, lasts: float, p: Any) -> tuple[Any, Any]:
-    """The state at the end of an arc, and its derivatives by the state at the start, (6, 6)."""
+    """The state at the end of an arc, and its derivatives with respect to `y`, (6, 6)."""
 
     def both(_: float, u: Any) -> Any:
         by_state, _ = by_complex_steps(lambda y, p: rates(mode, side, y, p), u[:6], p, [])
@@ -76,7 +76,7 @@ def _stretch(mode: str, side: int, y: Any, lasts: float, p: Any) -> tuple[Any, A
 
 
 def growths(motion: Trajectory, wrt: tuple[str, ...], times: Any) -> Any:
-    """Logarithms of the diagonal of R at times, shape (m, k)."""
+    """Logarithms of the diagonal of R of the QR decomposition at the times, (m, k)."""
     scene = motion.scene
     p, length = numbers(scene), max(scene.a, scene.b)
     speed = np.sqrt(scene.gravity * length)

@@ -1,4 +1,4 @@
-"""Growth of changes agrees with saltation matrices, exact orbits, volumes, and neighbours."""
+"""The growth of changes agrees with saltation matrices, exact orbits and neighbouring motions."""
 
 import math
 from typing import Any
@@ -29,10 +29,7 @@ SLIDES = Scene(0.5, 1.5, friction=0.2, theta=1.4, omega=-3.7, x_dot=-2.2)
     ],
 )
 def test_growth_agrees_with_saltation_matrices(scene: Scene, end: float, kinds: set[str]) -> None:
-    """All columns agree, and columns vanish at the same events.
-
-    Each part is known to 1e-11; relative to later, smaller columns this error is larger.
-    """
+    """Each part is known to 1e-11; relative to later, smaller columns this error is larger."""
     motion = simulate(scene, [end])
     assert {event.kind.name for event in motion.events} == kinds
     found = motion.growth()
@@ -66,9 +63,9 @@ def test_a_rounding_grows_to_a_thousandth_by_the_stated_time() -> None:
     assert simulate(CHAOS, [18.0]).growth("theta").known_until == math.inf
 
 
-def test_elastic_bounces_keep_volumes() -> None:
-    """The volume is that of all six coordinates, also where changes grow: each part has an error of
-    about 1e-11."""
+def test_elastic_bounces_conserve_volumes() -> None:
+    """The volume in all six coordinates is constant even while changes grow. Each part of the
+    motion adds an error of about 1e-11."""
     found = simulate(CHAOS, [9.0]).growth()
     assert found.log[-1, 0] > 10 and np.abs(found.log.sum(axis=1)).max() < 1e-9
 
@@ -84,15 +81,15 @@ def test_elastic_bounces_keep_volumes() -> None:
         (scenes.jump, 2.0, []),
     ],
 )
-def test_lost_coordinates_have_no_growth(scene: Scene, end: float, lost: list[str]) -> None:
+def test_changes_erased_by_events_have_no_growth(scene: Scene, end: float, lost: list[str]) -> None:
     found = simulate(scene, [end]).growth()
     assert found.wrt == COORDINATES[: len(found.wrt)]
     gone = [name for name, log in zip(found.wrt, found.log[-1], strict=True) if log == -math.inf]
     assert len(gone) == len(lost) and gone == lost, found
 
 
-def test_a_column_has_the_size_of_the_derivatives() -> None:
-    """The first column of R is the growth of the first coordinate, whatever the others are."""
+def test_the_first_growth_equals_the_size_of_the_derivatives() -> None:
+    """The growth of the first coordinate does not depend on the other coordinates."""
     motion = simulate(BOUNCES, [1.9])
     for name in ("omega", "x_dot"):
         known = motion.sensitivity(name)
@@ -112,7 +109,7 @@ def test_growth_ends_with_a_message_where_there_is_no_derivative() -> None:
 
 
 def test_only_changes_of_angle_and_position_remain_after_summed_bounces() -> None:
-    """The hops of the disc are summed. Three columns vanish, and the others remain."""
+    """The package sums the last bounces of the disc, after which three columns vanish."""
     disc = Scene(1.0, 1.0, z=2.0, omega=6.0, friction=0.2, restitution=0.5)
     found: Any = simulate(disc, 3.0).growth()
     assert found.message == "" and np.isneginf(found.log[-1, 3:]).all()

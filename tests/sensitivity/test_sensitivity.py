@@ -42,13 +42,13 @@ def sizes(scene: Scene, true: Any, wrt: list[str]) -> Any:
 
 
 def off(scene: Scene, found: Any, true: Any, wrt: list[str]) -> Any:
-    """Errors of columns, as `Sensitivity.error` is measured."""
+    """Errors of columns, relative as in `Sensitivity.error`."""
     errors = np.abs((found - true) / units(scene)[:, None]).reshape(-1, len(wrt))
     return errors.max(axis=0) / sizes(scene, true, wrt)
 
 
 def drawn(rng: np.random.Generator) -> tuple[Trajectory, list[str]]:
-    """A motion with 1 to 6 events, a millisecond apart at least, and its inputs."""
+    """A motion with 1 to 6 events, at least a millisecond apart, and its inputs."""
     while True:
         a, b = rng.uniform(0.5, 2, 2)
         given: dict[str, Any] = {
@@ -156,7 +156,7 @@ def test_rolling_conserves_phase_space_areas() -> None:
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_rolling_on_slopes_agrees_with_the_chain() -> None:
-    """The slope is an argument and an input, also where it is 0 and for arrays."""
+    """The slope is one of the inputs, even where it is 0."""
     rng = np.random.default_rng(8)
     wrt = ["a", "b", "gravity", "slope", "theta", "omega"]
     a, b = rng.uniform(0.5, 2, (2, 20))
@@ -181,7 +181,7 @@ OF_BOUNCES = [STATE.index(name) for name in bounces.STATE]
 
 
 def relative(scene: Scene, found: Any, true: Any, wrt: list[str]) -> Any:
-    """Errors of the last state of bounces over its largest entry."""
+    """Errors of the last state, relative to its largest entry."""
     unit = units(scene)[OF_BOUNCES, None]
     size = np.fmax(np.abs(true / unit).max(axis=0), [1 / size_of(scene, name) for name in wrt])
     return np.abs((found - true) / unit).max(axis=0) / size
@@ -209,7 +209,7 @@ def test_derivatives_chained_over_parts_agree_with_the_whole() -> None:
 
 def test_growing_derivatives_are_accurate_until_they_are_rejected() -> None:
     """Derivatives agree with the motion's own arcs in 60 digits up to a growth of 1e12, and are
-    refused beyond; the exact motion departs by growing roundings, which the error covers.
+    refused beyond 1e13. The exact motion differs by growing roundings, which the error covers.
 
     At 14 s the exact motion has dtheta/dtheta0 = -8.851e8. The product of six parts, each with
     an error of some 1e-12, is within 1e-10.
@@ -259,8 +259,8 @@ def test_stated_errors_cover_the_true_errors_of_bounces() -> None:
 
 
 def test_derivatives_of_event_times_do_not_depend_on_the_samples() -> None:
-    """The body slides on ice, where a slope starts and ends slips; in 40 digits the first REVERSE
-    moves by -0.00998485024303 per radian of slope."""
+    """The first body slides almost without friction. In 40 digits its first REVERSE moves by
+    -0.00998485024303 s per radian of slope."""
     ice = Scene(
         5.588108666592639, 1.0, inertia=8.05673961741194, friction=5.463150523067873e-09,
         theta=-2.847479703823904, omega=-3.5083007800939634,
@@ -312,7 +312,7 @@ def test_a_forecast_for_changes_too_large_in_combination_warns() -> None:
     assert together and all("the changes of theta, omega together" in text for text in together)
 
 
-def test_a_forecast_is_accurate_to_second_order() -> None:
+def test_the_error_of_a_forecast_is_of_second_order() -> None:
     """Half the change leaves a quarter of the error; events keep their order within `distance`."""
     motion = simulate(DROP, [0.3, 1.0])
     known = motion.sensitivity(("theta", "friction"))
@@ -333,9 +333,9 @@ def test_a_forecast_is_accurate_to_second_order() -> None:
         assert near == [kinds(name, 0)] * 2 and far != near
 
 
-def test_derivatives_hold_at_events_at_bounds_and_with_steps() -> None:
-    """Derivatives at bounds are one-sided, errors of the method count, dx/dx is 1, and d/dt gives
-    rates."""
+def test_derivatives_are_right_at_events_at_bounds_and_for_steps() -> None:
+    """Derivatives at bounds are one-sided, the error includes that of the method, dx/dx is 1, and
+    d/dt gives the rates."""
     motion = simulate(DROP, np.sort([0.0, 1.0, *(e.t for e in simulate(DROP, 1.0).events)]))
     known = motion.sensitivity(("x", "t", "theta"))
     assert np.abs(known.state[:, :, 0] - [1, 0, 0, 0, 0, 0]).max() < 1e-12
@@ -370,8 +370,8 @@ RESISTED = Scene(2.0, 1.0, theta=0.4, friction=1.0, rolling_resistance=0.02)
         (RESISTED.replace(slope=0.1, rolling_resistance=0.0), []),
     ],
 )
-def test_derivatives_hold_across_turns_with_resistance(scene: Scene, kinds: list[str]) -> None:
-    """The reference has second-order differences; steps of 1e-6 m leave about 1e-9."""
+def test_resistance_derivatives_agree_with_differences(scene: Scene, kinds: list[str]) -> None:
+    """The reference is a difference of second order; steps of 1e-6 leave errors of about 1e-9."""
     motion = simulate(scene, [1.1, 4.5])
     assert [event.kind.name for event in motion.events] == kinds
     found = motion.sensitivity(["rolling_resistance", "theta"], side=1)
@@ -390,8 +390,7 @@ def test_derivatives_hold_across_turns_with_resistance(scene: Scene, kinds: list
 
 
 @pytest.mark.parametrize("package", ["numpy", "jax", "torch"])
-def test_the_code_on_the_page_gives_the_same_gradient(package: str) -> None:
-    """The recipes on the page have the gradient of `sensitivity`."""
+def test_the_code_on_the_page_gives_the_gradient_of_sensitivity(package: str) -> None:
     pytest.importorskip(package)
     page = (ROOT / "docs" / "sensitivity.md").read_text(encoding="utf-8")
     names: dict[str, Any] = {}

@@ -1,9 +1,8 @@
 """Baumgarte's feedback f'' + 2 alpha f' + beta^2 f = 0 (J. Baumgarte, Comput. Methods Appl. Mech.
 Eng. 1 (1972) 1): its effect, its cost, and the gains at which a step makes it unstable.
 
-A step of an explicit method multiplies an error e^(s t) by R(h s), so that the gains have a limit:
-for alpha = beta, f1 has the root -2 alpha, and 2 alpha h may reach the end of the real stability
-interval.
+A step of an explicit method multiplies an error e^(s t) by R(h s), which limits the gains. For
+alpha = beta, f1 has the root -2 alpha, so 2 alpha h must lie in the real stability interval.
 """
 
 import re
@@ -36,8 +35,8 @@ from stability_laws import (
 
 
 def growth(method: str, alpha: float, beta: float, step: float) -> float:
-    """Largest factor of a step on constraint errors: roots of s^2 + 2 alpha s + beta^2 for the
-    positions, -2 alpha for f1."""
+    """Largest factor by which a step multiplies constraint errors; their rates are the roots of s^2
+    + 2 alpha s + beta^2 for positions, and -2 alpha for f1."""
     roots = np.array([*np.roots([1, 2 * alpha, beta**2]), -2 * alpha])
     return float(amplification(method, step * roots).max())
 
@@ -72,10 +71,10 @@ def test_feedback_on_a_circle_follows_the_stability_function(method: str) -> Non
         assert abs(held.velocity[0, 1] - exact[1]) <= 2e-14 * grown / step, (alpha, beta)
 
 
-def test_the_package_knows_the_stability_function() -> None:
-    """The package's factor of a step (complex arithmetic on the stages) agrees with this suite's (a
-    polynomial and numpy's roots) to 1e-7 of the largest of their terms: there are 12 stages, and
-    numpy finds double roots to half the digits only."""
+def test_the_factor_of_a_step_agrees_with_the_stability_polynomial() -> None:
+    """The package computes the factor of a step from the stages, the test from a polynomial and
+    numpy's roots. The bound is 1e-7 of the largest term, because there are 12 stages, and numpy
+    finds double roots to only half the digits."""
     random = np.random.default_rng(4)
     worst = 0.0
     for method in EXPLICIT:
@@ -102,9 +101,9 @@ LIMITS = {"rk4": 2.785293563405282, "dopri5": 3.3065678926, "dop853": 6.39365152
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_equal_gains_fail_at_the_end_of_the_stability_interval(method: str) -> None:
-    """Bisection finds that runs are lost within 1 % of the end of the stability interval of 2 alpha
-    h. On the ellipse, errors of 1e-6 must reach 1 in 600 steps (2.3 % a step, where R' is 2 or
-    more), and the constraints change as the body turns."""
+    """The gain at which runs are lost, found by bisection, agrees with theory to 1 %: errors of
+    1e-6 must reach 1 in 600 steps (2.3 % a step, where R' is 2 or more), and the constraints of an
+    ellipse change as it turns."""
     limit = interval(method, -1)
     assert limit == pytest.approx(LIMITS[method], rel=1e-9)
     found = reach(method)
@@ -164,9 +163,9 @@ def test_controlled_steps_find_the_stability_limit_by_themselves() -> None:
 
 
 def test_errors_fall_with_the_square_of_small_gains_and_large_gains_spoil_the_phase() -> None:
-    """Truncation pushes the constraints by d on average: errors are d t^2/2 without feedback, and
-    d/beta^2 with it. Both give the same d to 15 % (d also varies within a turn, which matters more
-    the smaller the mean), and the slope is -2 up to gains of 2.
+    """Truncation acts on the constraints like a mean acceleration d: errors are d t^2/2 without
+    feedback, and d/beta^2 with it. Both give the same d to 15 % (d also varies within a turn), and
+    the slope is -2 up to gains of 2.
 
     The feedback's own truncation grows with a power of gain times step: residuals are smallest
     between gains of 5 and 10 and rise again, like the gain or faster; the phase error, equal

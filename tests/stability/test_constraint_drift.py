@@ -22,8 +22,8 @@ DRIFTS = {
 def test_residuals_grow_like_t_squared(scene: Scene, method: str, step: float, last: int) -> None:
     """A step violates the constraints by its truncation error in position and velocity, and the
     equations keep their second derivatives at 0: errors grow like t in velocity and like t^2 in
-    position. Slopes are taken from 10 half turns on, while the gap stays below 1e-2; steps are
-    powers of two, so that knots are met exactly."""
+    position. Slopes are taken from 10 half turns on, while the gap stays below 1e-2. Steps are
+    powers of two, so that samples are exactly at the ends of steps."""
     spans = np.unique(np.geomspace(10, last, 10).round())
     found = envelopes(scene, spans, step, **kept_by("none", method=method, step=step))
     gap, position, velocity = (exponent(spans, missed) for missed in found)

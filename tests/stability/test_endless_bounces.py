@@ -17,7 +17,7 @@ from rolling_ellipse import EventKind, Scene, simulate
 from stability_laws import GRAVITY, B, event_loop, exponent, sinking
 
 SPEED, E = 1.7, 0.5
-UNIT = math.sqrt(GRAVITY * B)  # unit of the speeds of rest [m/s]
+UNIT = math.sqrt(GRAVITY * B)  # unit of rest_speed [m/s]
 
 
 def dropped(theta: float = 0.0, **given: Any) -> Scene:

@@ -1,12 +1,12 @@
 """Errors of energy and phase grow over thousands of half swings as theory predicts.
 
 A method that drifts changes the energy in proportion to time and the phase by its square. Gauss
-collocation neither drifts nor, with compensated sums and stages solved to the last bit, adds up
-its roundings: they walk at random, the energy as time^0.5, the phase as time^1.5 (E. Hairer,
+collocation does not drift. With compensated sums and stages solved to the last bit, its roundings
+are a random walk: errors grow like time^0.5 in energy and like time^1.5 in phase (E. Hairer,
 R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231).
 
-The motion rocks, so that theta stays small and doubles represent the energy to its last digits. In
-a rotation theta grows, and they do so only where the ellipse lies flat.
+The motion rocks, so that theta stays small and determines the energy to its last digits. In a
+rotation theta grows, and determines the energy as well only where the ellipse lies flat.
 """
 
 import math
@@ -53,8 +53,8 @@ def test_growth_exponents_are_measured_correctly(drift: float, expected: float) 
 
 
 def test_the_energy_error_is_measured_correctly() -> None:
-    """A change of 1e-9 in omega is 2e-9 of the kinetic energy; at every angle the energy agrees
-    with the package's to a few ulp."""
+    """A relative change of 1e-9 in omega changes the kinetic energy by 2e-9. At other angles the
+    energy agrees with the package's to a few ulps."""
     omega = QUICK.omega
     kinetic = (GYRATION2 + B * B) * omega**2 / 2
     found = energy_error(np.zeros(1), np.array([omega * (1 + 1e-9)]), omega)
@@ -68,7 +68,7 @@ def test_the_energy_error_is_measured_correctly() -> None:
 @pytest.mark.parametrize("name", DRIFTING)
 def test_drifting_methods_lose_energy_and_phase_as_predicted(name: str) -> None:
     """Energy errors grow like time over three decades, phase errors like its square over the last
-    decade; before that, the truncation of the period, proportional to time, is not yet small."""
+    decade. Earlier, the truncation of the period, proportional to time, still matters."""
     drifting = errors(QUICK, SAMPLES, [DRIFTING[name]])
     energy = growth(drifting.energy)
     late = spread(SAMPLES // 10, SAMPLES) - 1
@@ -95,7 +95,7 @@ def test_constraints_alone_do_not_conserve_energy(name: str, power: int) -> None
     assert slope == pytest.approx(power, abs=0.15)
 
 
-def test_the_energy_of_gauss_walks_at_random() -> None:
+def test_the_energy_error_of_gauss_is_a_random_walk() -> None:
     """A step errs by at most an ulp of its largest change of omega, and the errors walk at random
     without a drift: the mean of the runs stays within its own scatter (5 sigma)."""
     energy = walks().energy
@@ -110,7 +110,7 @@ def test_the_energy_of_gauss_walks_at_random() -> None:
     assert rms(last) < math.sqrt(QUICK.steps * SAMPLES) * one_step
 
 
-def test_the_phase_of_gauss_walks_at_random() -> None:
+def test_the_phase_error_of_gauss_grows_like_t_to_the_three_halves() -> None:
     """Delays are compared with their mean over all runs, because truncation causes this mean.
 
     The fit starts at 100 half swings, where the walk of the energy dominates the phase. In

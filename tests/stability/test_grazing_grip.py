@@ -1,8 +1,8 @@
-"""With friction just above or below the need of rolling, the grip holds or is lost for an instant.
+"""With friction just above or below what rolling needs, the grip holds or is lost for an instant.
 
-The need has a smooth maximum during the rise: if friction falls short of it by 10^-k, the need is
-larger than friction over 10^(-k/2) of the path. Beyond some k neither samples nor ends of steps
-show this; the certificate decides signs of polynomials and misses no such place.
+The friction needed has a smooth maximum during the rise. If friction falls short of it by 10^-k,
+more is needed over 10^(-k/2) of the path. Beyond some k neither samples nor ends of steps show
+this; the certificate decides signs of polynomials and misses no such place.
 """
 
 import math
@@ -21,12 +21,12 @@ from stability_laws import GRAZING as SCENE
 
 OMEGA = SCENE.omega
 DISTANCES = range(1, 16)  # exponents k of the distances 10^-k
-# Exponents that are decided: margins of the polynomial of degree 10 allow 1e-12 of its terms.
+# Exponents with a sure verdict: the polynomial of degree 10 is known to 1e-12 of its terms.
 DECIDED = range(1, 12)
 
 
 def ratio(theta: Any) -> Any:
-    """|F|/N of rolling with the energy of SCENE, by Newton's law, in the arithmetic of theta."""
+    """|F|/N of rolling with the energy of SCENE, from Newton's law, in the arithmetic of theta."""
     at = support(theta, *((mp.mpf(A), mp.mpf(B)) if isinstance(theta, mp.mpf) else (A, B)))
     inertia = GYRATION2 + at.h**2 + at.slope**2
     omega2 = ((GYRATION2 + B * B) * OMEGA**2 + 2 * GRAVITY * (B - at.h)) / inertia
@@ -39,7 +39,7 @@ def ratio(theta: Any) -> Any:
 
 @cache
 def need() -> tuple[Any, Any]:
-    """The largest |F|/N and its angle, by the zero of the derivative, in 40 digits."""
+    """The largest |F|/N and its angle, from the zero of the derivative, in 40 digits."""
     with mp.workdps(DIGITS):
         where = mp.findroot(lambda y: mp.diff(ratio, y), mp.mpf("0.85"))
         return ratio(where), where
@@ -88,10 +88,10 @@ def test_the_certificate_misses_nothing_down_to_1e_minus_11(side: int) -> None:
 
 @pytest.mark.parametrize("slope", [0.0, 1e-300], ids=["by the certificate", "by the event finder"])
 def test_the_motion_slips_only_where_friction_is_insufficient(slope: float) -> None:
-    """On level ground the certificate gives the angle; on the slightest slope an event of the
-    stepped motion gives it, by a search for the minima of mu N - |F|, not for a change of sign. The
-    angle is where the need first exceeds mu, 10^(-k/2) before the maximum: known to some ulp of the
-    need over its slope there, 1e-15 10^(k/2), and on a slope to the error of the steps."""
+    """On level ground the certificate gives the angle. On the slightest slope an event of the
+    stepped motion gives it, because minima of mu N - |F| are searched for, not changes of sign.
+    |F|/N first exceeds mu at an angle of 10^(-k/2) before its maximum, which is known to some ulps
+    of |F|/N over its slope, 1e-15 10^(k/2), and on a slope to the error of the steps."""
     maximum = need()[1]
     for k in DECIDED:
         for side in (1, -1):

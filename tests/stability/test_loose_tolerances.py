@@ -58,7 +58,7 @@ def test_energy_is_conserved_only_by_construction(scene: str, name: str) -> None
     found = run(scene, name)
     if kind(name) in ("exact", "contact", "projection+energy"):
         off = np.abs(found.motion.energy / found.motion.energy[0] - 1)
-        # a rotation's theta is 100: its last digit is 64 ulp, and the height has slope 1
+        # theta of the rotation reaches 100, where an ulp is 64 times that of 1, and |h'| reaches 1
         assert np.max(off) <= 8 * 2.0**-52 * max(1, np.abs(found.motion.theta).max())
     else:
         assert found.energy.max() > (1e-5 if kind(name) == "ggl" else 1e-4)

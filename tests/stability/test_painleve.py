@@ -43,11 +43,11 @@ BEYOND = [sliding(3.0, theta=0.9), sliding(3.0, theta=0.3), sliding(1.5), slidin
 
 
 @pytest.mark.parametrize("scene", BEYOND, ids=["3 at 0.9", "3 at 0.3", "1.5", "1.36"])
-def test_a_force_law_continues_with_nonsense_where_the_package_jams(scene: Scene) -> None:
+def test_a_force_law_continues_with_nonsense_where_the_package_reports_a_jam(scene: Scene) -> None:
     """N is negative from the first instant, although gravity presses the body down (c = g). The
     ground pulls, the slip grows, and with steps of either size the body soon has more than twice
-    its energy; mostly the numbers overflow. The package ends the motion at the first instant, with
-    a message and finite numbers."""
+    its energy; most runs overflow. The package ends the motion at the first instant, with a message
+    and finite numbers."""
     start = scene.initial_state
     state, mu = (start.theta, start.omega, start.x_dot), scene.friction
     at = support(start.theta, A, B)
@@ -88,12 +88,12 @@ def test_a_slide_jams_only_above_the_critical_friction(distance: float, mirrored
     response = (1 + at.slope**2 / GYRATION2) * distance
     told(f"{distance:g}: N/m = {below.normal_force[0]:.4e}, g/B = {GRAVITY / response:.4e}")
     assert below.status is Status.COMPLETED
-    # B is a difference of ones, with an error of an ulp or two of them
+    # B is a difference of numbers near 1, with an error of an ulp or two of 1
     assert below.normal_force[0] == pytest.approx(GRAVITY / response, rel=4 * EPS / distance)
     stick = below.events[0]
     assert stick.kind is EventKind.STICK
-    # theta hardly changes meanwhile: slip and omega change as mu Gtt - Gnt to mu h - h', and B d
-    # omega/dt = (mu h - h')(g + h'' omega^2)/k^2 with h'' < 0
+    # theta hardly changes, so changes of slip and omega are in the ratio of mu Gtt - Gnt to
+    # (mu h - h')/k^2, and B d omega/dt = (mu h - h')(g + h'' omega^2)/k^2 with h'' < 0
     spin = (exact * at.h - at.slope) / GYRATION2
     grip = exact * (1 + at.h**2 / GYRATION2) - at.h * at.slope / GYRATION2
     bend = math.sqrt(-at.curvature / GRAVITY)
@@ -120,7 +120,7 @@ def test_a_slide_that_starts_with_almost_no_contact_response_ends_at_once(distan
         found = simulate(scene, 0.1)
         stick = found.events[0]
         assert found.status is Status.COMPLETED and stick.kind is EventKind.STICK, omega
-        # N/m is g/B for at least a third of the time; B = 1 - ... may be off by some 4 ulp
+        # N/m is at least a third of g/B on average; B = 1 - ... may be off by some 4 ulps
         longest = slip / grip * (response + 4 * EPS) / (GRAVITY / 3)
         assert 0 <= stick.t <= longest, omega
         turned = stick.state_after.omega - omega

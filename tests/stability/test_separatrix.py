@@ -18,7 +18,7 @@ from stability_laws import DECIDE, STRAY, exponent, kept_by, own_separatrix, rol
 DISTANCES = range(2, 15)  # exponents k of the distances 10^-k
 SIDES = (1, -1)
 
-# Effect of one rounding of every input on the distance: d ln(omega/omega_R) of omega, g, a, b, k^2
+# Effect of one rounding of omega, g, a, b and k^2 each on the distance ln(omega/omega_R)
 UNIT = (1 + 1 / 2 + A / (2 * (A - B)) + B / (2 * (A - B)) + B * B / 2.25 + 1.25 / 4.5) * EPS
 
 FAIL: dict[str, dict[str, Any]] = STRAY | {
@@ -36,14 +36,14 @@ def first_wrong(side: int, **how: Any) -> int | None:
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("how", [*DECIDE.values(), {"model": "auto"}], ids=[*DECIDE, "auto"])
-def test_motions_that_conserve_energy_are_right(how: dict[str, Any], side: int) -> None:
+def test_energy_conserving_methods_are_on_the_right_side(how: dict[str, Any], side: int) -> None:
     """Exact motions, and stepped motions that conserve energy, decide correctly to within 1e-14 of
     the separatrix, which is 45 ulp of omega."""
     assert first_wrong(side, **how) is None
 
 
 @pytest.mark.parametrize("name", FAIL)
-def test_every_stepped_method_is_wrong_close_enough_to_the_separatrix(name: str) -> None:
+def test_a_method_that_loses_energy_is_wrong_close_to_the_separatrix(name: str) -> None:
     """A method is wrong for starts between its own separatrix and the true one, that is for k of at
     least -log10(distance). A distance as small as rounding is known only to within one k. (ggl is
     too slow for a bisection.)"""

@@ -1,8 +1,8 @@
 """Angles where the report's formulas divide by zero although the motion is regular.
 
-The report's lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2), its fourth row has tan theta: both
-are infinite at every quarter turn, lambda3 of a circle everywhere. The linear system of the
-multipliers, the rows with cos^2 theta and the support function are regular there.
+The report's lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2), and its fourth row has tan theta.
+Both are infinite at every quarter turn, and lambda3 of a circle is infinite everywhere. The linear
+system of the multipliers, the rows with cos^2 theta and the support function are regular there.
 """
 
 import math
@@ -24,10 +24,10 @@ def slope(values: list[float], first: int = 3) -> float:
 
 
 def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
-    """At the tip 1/sin(2 psi) and tan^2 theta, with the lost terms, grow like distance^-3. Near a
-    circle the value grows like 1/(a - b), with a numerator that changes its sign near a/b = 1.003.
-    The relative errors of these laws are the distance itself, 1e-3 where the fits begin, and some
-    30 times the distance for the circle. With all terms the value has a limit of the form 0/0. Its
+    """Near the tip the printed value, from which terms are lost, grows like distance^-3: 1/sin(2
+    psi) times tan^2 theta. Near a circle it grows like 1/(a - b), with a numerator that changes its
+    sign near a/b = 1.003. The relative errors of these laws are the distance, 1e-3 where the fits
+    begin, and 30 times the distance for the circle. With all terms the value has a limit 0/0. Its
     rounding error grows like 1/distance: an ulp of psi = pi/2 is 2.2e-16/10^-k of the distance, and
     tan^2 theta contains this error twice."""
     at_tip = [third(TIP + 10.0**-k, 2.0, 1.0).printed for k in CLOSE]
@@ -46,7 +46,7 @@ def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
     assert abs(lost[-1]) > 1e-5
 
 
-def test_the_printed_tangent_does_not_pass_the_tip() -> None:
+def test_the_motion_with_the_printed_tangent_stops_at_the_tip() -> None:
     """The printed tangent is singular at a quarter turn, where the motion stops with a message."""
     q, q_dot = start(0.0, 3.2)
     how: dict[str, Any] = SHAPE | {"equations": "printed", "method": "rk4", "step": 0.02}

@@ -12,7 +12,7 @@ from stability_laws import RATIOS, STABILIZATIONS, exponent, kept_by, steps_need
 @pytest.mark.parametrize("method", ["dop853", "dopri5"])
 def test_the_number_of_controlled_steps_grows_only_logarithmically(method: str) -> None:
     """No decade of a/b adds more steps than the one before: near the flat position the motion is
-    self-similar, so that each factor in a/b adds a fixed number of steps: a power below 0.2."""
+    self-similar, so that each factor in a/b adds a fixed number of steps."""
     counts = [steps_taken(ratio, method=method) for ratio in RATIOS]
     told(", ".join(f"{r:g}: {n}" for r, n in zip(RATIOS, counts, strict=True)))
     ten, hundred, thousand = (counts[RATIOS.index(ratio)] for ratio in (10, 100, 1000))

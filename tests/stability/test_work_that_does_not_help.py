@@ -1,8 +1,8 @@
 """Once errors reach rounding, more work does not improve the answer: errors stay or rise again.
 
-Plain sums lose their roundings, and the error of a step method walks at random: n = T/h steps add
-sqrt n roundings, so that the error falls like h^p and then rises like h^(-1/2). With compensated
-sums, as in all steps of this package, the error falls and stays.
+The roundings of plain sums are a random walk: n = T/h steps add sqrt n roundings, so that the error
+falls like h^p and then rises like h^(-1/2). With compensated sums, as in all steps of this package,
+the error falls and stays.
 """
 
 import math
@@ -37,7 +37,7 @@ from stability_laws import (
 
 @cache
 def known() -> np.ndarray:
-    """Angles of the first 8 starts after SPAN, in 40 digits by the energy integral."""
+    """Angles of the first 8 starts after SPAN, from the energy integral in 40 digits."""
     with mp.workdps(DIGITS):
         starts = zip(THETA[:8].tolist(), SPEED[:8].tolist(), strict=True)
         scenes = [reference.Scene(A, B, GYRATION2, GRAVITY, *start) for start in starts]
@@ -45,7 +45,7 @@ def known() -> np.ndarray:
         return np.array([float(moving.state(mp.mpf(SPAN)).theta) for moving in motions])
 
 
-def test_plain_sums_get_worse_with_more_steps() -> None:
+def test_errors_of_plain_sums_rise_again_with_more_steps() -> None:
     """Rms errors of a hundred starts have slope 4 in double precision. In single precision, where
     few steps suffice, they have slope 4 down to 2^-5 s, are least at 2^-6 s, and then have slope
     -1/2, to within 0.12, because the rms of a hundred starts scatters by a tenth. Steps of 2^-12 s
@@ -69,10 +69,10 @@ FINE = {"rk4": (14, 18), "dopri5": (11, 17), "radau": (11, 15), "dop853": (8, 16
 
 
 @pytest.mark.parametrize("method", ORDERS)
-def test_the_package_gets_no_worse_with_more_steps(method: str) -> None:
-    """The error follows the order of the method down to rounding. Then it has no slope, to within
-    0.15 for eight starts, up to a hundred thousand steps, and stays within 4 ulp of the largest
-    angle, 0.4 rad."""
+def test_errors_of_the_package_do_not_rise_with_more_steps(method: str) -> None:
+    """The error follows the order of the method down to rounding. Then its slope is 0 (to within
+    0.15, for eight starts) up to a hundred thousand steps, and it stays within 4 ulps of the
+    largest angle, 0.4 rad."""
 
     def errors(first: int, end: int) -> tuple[np.ndarray, list[float]]:
         steps = 2.0 ** -np.arange(first, end)
@@ -105,9 +105,9 @@ ASKED: dict[str, tuple[range, range, float]] = {
 @pytest.mark.parametrize("method", ASKED)
 def test_tolerances_below_rounding_do_not_reduce_the_error(method: Any) -> None:
     """Above the level of rounding the error falls as the number of evaluations to the power of
-    minus the order (to within a third, since steps change with the tolerance). At this level each
-    further digit of the tolerance costs a fifth to a half more, and the error stays within 16 ulp
-    of the angle, which is about 32 rad after ten half turns."""
+    minus the order (to within a third, since steps change with the tolerance). Below, each further
+    digit of the tolerance costs at least a fifth more, and the error stays within 16 ulps of the
+    angle, which is about 32 rad after ten half turns."""
     falling, asked, order = ASKED[method]
     end = 10.37 * period(SPUN) / 2
     truth = simulate(SPUN, [end]).theta[0]

@@ -1,4 +1,4 @@
-"""Exactly the motions that lose energy or constraints give a StabilityWarning."""
+"""A StabilityWarning is given if and only if a motion loses energy or violates its constraints."""
 
 import math
 import warnings
@@ -26,7 +26,7 @@ def advice(scene: Scene, t: Any, **how: Any) -> tuple[rl.Trajectory, list[str]]:
 
 
 class Losses(NamedTuple):
-    """Losses of a stepped motion, as the core gives them."""
+    """Losses of a stepped motion, as the core reports them."""
 
     energy: float
     constraints: float
@@ -34,7 +34,7 @@ class Losses(NamedTuple):
 
 
 def lost(motion: rl.Trajectory) -> Losses:
-    """Losses of a stepped motion, also printed."""
+    """Losses of a stepped motion, which are also printed."""
     found = motion._solution.losses()
     assert found is not None
     told(*found)

@@ -63,7 +63,7 @@ def test_a_motion_with_one_changed_bit_is_unequal(make: Callable[[], Trajectory]
         assert dataclasses.replace(motion, contact=motion.contact._replace(z=z)) != motion
 
 
-def test_the_sign_of_zero_counts() -> None:
+def test_motions_that_differ_in_the_sign_of_a_zero_are_unequal() -> None:
     motion = MOTIONS["rolling"]()
     assert motion.x[0] == 0
     other = dataclasses.replace(motion, x=np.where(motion.x == 0, -0.0, motion.x))

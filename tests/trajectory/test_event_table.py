@@ -1,4 +1,4 @@
-"""Tables of events equal the objects bit for bit, for one motion and for many."""
+"""Tables of events equal the Event objects bit for bit, for one motion and for many."""
 
 import copy
 import pickle
@@ -70,13 +70,13 @@ def test_the_motions_have_events_of_all_kinds() -> None:
     hidden = [motion._solution.turns.size for motion in motions()]
     assert hidden[2] > 0 and not set(motions()[2]._solution.turns) & set(tables[2]["t"])
     reasons = [*chain.from_iterable(each["reason"] for each in tables)]
-    assert len({*reasons}) == len(kinds) + 1  # slips at infinite friction differ
+    assert len({*reasons}) == len(kinds) + 1  # a second one for slips at infinite friction
     lost = np.concatenate([each["energy_lost"] for each in tables])
     assert (lost > 0).any() and (lost == 0).any() and not (lost < 0).any()
 
 
 def test_an_impact_changes_the_motion_by_its_impulse() -> None:
-    """Impulse and energies obey Newton's second law; other events have no impulse."""
+    """The impulse equals the change of momentum; other events have no impulse."""
     for motion in motions():
         table, mass = motion.events.table, motion.scene.mass
         hit = table["kind"] == EventKind.IMPACT
@@ -86,7 +86,7 @@ def test_an_impact_changes_the_motion_by_its_impulse() -> None:
         taken = table["energy_before"] - table["energy_after"]
         fall = mass * 9.81 * (np.abs(table["z_before"]) + np.abs(table["x_before"]))
         largest = np.abs(table["energy_before"]) + 2 * fall  # at least kinetic + |potential| energy
-        # the energies and what is lost have at most 8 roundings each, of this or smaller numbers
+        # both energies and their loss have at most 8 roundings each, of numbers up to this size
         assert np.all(np.abs(taken - table["energy_lost"])[hit] <= 24 * 1.2e-16 * largest[hit])
 
 
@@ -102,7 +102,7 @@ def test_the_table_of_many_motions_joins_the_tables_of_each(workers: Any) -> Non
     assert "JAMMED" in found.status and "MAX_EVENTS" in found.status and not found.errors
 
 
-def test_a_scene_without_a_motion_has_its_exception_and_no_event() -> None:
+def test_a_failed_scene_has_its_exception_and_no_event() -> None:
     grid = {"a": 2.0, "b": 1.0, "z": [[2.0, 1.0, 3.0]], "omega": [[0.0], [3.2]]}
     grid["restitution"] = 0.5
     found = many(grid, raise_on_failure=True, max_events=1)
@@ -118,7 +118,7 @@ def test_a_scene_without_a_motion_has_its_exception_and_no_event() -> None:
     assert many({"a": 2.0, "b": 1.0, "z": 3.0}).status.shape == ()
 
 
-def test_a_folder_has_the_same_table(tmp_path: Path) -> None:
+def test_the_table_of_a_folder_equals_that_of_its_motions(tmp_path: Path) -> None:
     folder = rl.simulate_many(SCENES, [1.0, T_END], out=tmp_path / "many", max_events=60)
     stored = rl.load_many(folder)
     require_bits(stored.arrays("events"), many())
@@ -168,7 +168,7 @@ def test_frames_and_datasets_have_names_units_and_scenes() -> None:
     assert "scene" not in alone.table.to_dataframe() and alone.table.to_xarray().sizes["event"] == 5
 
 
-def test_tables_say_how_many_events_of_each_kind_they_have() -> None:
+def test_tables_state_how_many_events_of_each_kind_they_have() -> None:
     bounces = rl.simulate(rl.scenes.bounce, 3.0).events.table
     assert repr(bounces) == "<EventTable of 5 events: 5 IMPACT>"
     assert repr(rl.simulate(rl.scenes.report, 1.0).events.table) == "<EventTable of 0 events: none>"

@@ -81,7 +81,7 @@ def test_a_subclass_inherits_and_overrides_the_methods(tmp_path: Path) -> None:
     assert np.array_equal(again.theta, motion.theta)
 
 
-def test_nothing_is_loaded_before_it_is_needed() -> None:
+def test_matplotlib_is_loaded_only_when_a_picture_is_requested() -> None:
     script = (
         "import sys, rolling_ellipse as rl; motion = rl.simulate(rl.scenes.rocking, 1.0);"
         "dir(motion), repr(motion), vars(rl.Trajectory), motion.at(1.0), motion._repr_html_();"

@@ -29,7 +29,7 @@ def faults(scene: Scene, motion: rl.Trajectory) -> list[str]:
     since = float(lands[1]) * (1 + 5e-6) if lands else 0.0  # t has six digits
     ends = [each for each in motion.events if each.kind in ENDS and each.t > since]
     ended = bool(at) or (rolls and bool(ends))
-    numbers = NUMBER.findall(NEEDS.sub("", text))  # the blow may need what its motion needs most
+    numbers = NUMBER.findall(NEEDS.sub("", text))  # a blow may need as much friction as the motion
     rules = {
         "ASCII": text.isascii(),
         "no number that is not finite": not re.search(r"\b(inf|nan)\b", text + proof.reason),

@@ -1,6 +1,6 @@
 """Each array of a Trajectory agrees with its definition, and residuals do not grow.
 
-The tests compute forces by Newton's law and the geometry in long double. tests/multipliers tests
+The tests compute forces from Newton's law, and the geometry in long double. tests/multipliers tests
 the multipliers.
 """
 
@@ -42,7 +42,7 @@ def outline(trajectory: Trajectory) -> Outline:
 
 
 def close(actual: np.ndarray, exact: Long, terms: Long, ulps: float) -> None:
-    """Assert errors within `ulps` units of 2^-52 of the added terms, at every sample."""
+    """Assert that errors are at most `ulps` times 2^-52 of the terms, at every sample."""
     off = np.abs(actual.astype(np.longdouble) - exact)
     worst = float(np.max(off / np.where(terms > 0, terms, np.inf))) / EPS if off.size else 0.0
     assert np.all(off <= ulps * EPS * terms), f"{worst:.3g} ulp"
@@ -91,7 +91,7 @@ def test_times_of_every_kind_become_the_same_doubles(t: Any) -> None:
     + [None, "1.0", (0.0, 1.0), 2**2000, [2**2000], np.ma.masked, np.datetime64("2020-01-01")],
     ids=repr,
 )  # fmt: skip
-def test_the_shortcut_accepts_no_wrong_times(t: Any) -> None:
+def test_the_shortcut_accepts_no_invalid_times(t: Any) -> None:
     assert _core.sample_times(t) is None
     with pytest.raises((ValueError, TypeError), match=r"^t must"):
         sample_times(t)
@@ -133,8 +133,8 @@ def test_positions_and_velocities_follow_from_theta_and_omega(motion: Trajectory
 
 
 def test_the_contact_moves_by_the_arc_length(motion: Trajectory) -> None:
-    """The contact moves by the arc length between the angles; the bound is 16 ulp, and an ulp of
-    theta times the radius of curvature, which is large where a thin body lies flat."""
+    """The bound is 16 ulps, plus two ulps of theta times the radius of curvature, which is large
+    where a thin body lies flat."""
     a, b = motion.scene.a, motion.scene.b
     arc = rl.geometry.arc_length(motion.theta, a=a, b=b)
     way = motion.contact_x - motion.contact_x[0]
@@ -172,9 +172,9 @@ def test_rates_are_derivatives_in_slides_and_flights(mode: Mode, name: str) -> N
 
 
 def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
-    """Assert a rate by central differences D(d) of `sol` at times d and 2 d away. D(d) misses the
-    rate by c d^2 + O(d^4), a third of D(2 d) - D(d) = 3 c d^2, and by the rounding of the values
-    over d: 16 ulp of their size, and a few ulp of theta times their slope."""
+    """Compare a rate with the central difference D(d) of `sol`. The error is c d^2 + O(d^4), where
+    D(2 d) - D(d) = 3 c d^2, plus the rounding of the values over d: 16 ulps of their size, and a
+    few ulps of theta times their slope."""
     scene = motion.scene
     step = 1e-4 * min(scene.a, scene.b) / max(scene.a, scene.b)
     times = motion.t[5:-5:7]
@@ -240,10 +240,10 @@ LONG_RUNS = {
 
 @pytest.mark.parametrize(("scene", "t_end"), LONG_RUNS.values(), ids=LONG_RUNS)
 def test_residuals_of_a_million_samples_do_not_grow(scene: Scene, t_end: float) -> None:
-    """Residuals stay within 1e-14 of the size, and 2 ulp of theta times h' of the ground.
+    """Residuals stay within 1e-14 plus two ulps of theta, times the long semi-axis.
 
     Velocities have the same bound times omega; the rates of f2, f3 and f4 are differences of terms
-    in psi_dot. The energy has 16 ulp, and the effect of 2 ulp of theta.
+    in psi_dot. The bound of the energy is 16 ulps plus the effect of two ulps of theta.
     """
     trajectory = simulate(scene, np.linspace(0, t_end, 1_000_000))
     if t_end > 1e5:

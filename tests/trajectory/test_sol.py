@@ -1,4 +1,4 @@
-"""A motion at other times than its samples: `sol`, `scene_at`."""
+"""A motion at times other than its samples: `sol` and `scene_at`."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ STEPPED: list[dict[str, Any]] = [
 
 
 def every_law() -> Iterator[Trajectory]:
-    """Yield motions with slides, flights, bounces, rest and rolling, on slopes, and by steps."""
+    """Yield motions with slides, flights, bounces, rest and rolling, exact or stepped."""
     for slope, seed in [(0.0, 5), (0.3, 6)]:
         for scene in random_scenes(30, seed, slope=slope):
             yield simulate(scene, 5.0, model="contact", raise_on_failure=False)
@@ -42,9 +42,9 @@ def columns(motion: Trajectory) -> list[np.ndarray]:
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_the_order_of_times_changes_no_bit() -> None:
-    """The times are reversed, shuffled or repeated; many use tables, few do not."""
+    """The times are reversed, shuffled and repeated. Many times use a table, few do not."""
     rng = np.random.default_rng(30)
-    few = 39  # 40 times and more use a table of exact rolling, within 8 units of a single time
+    few = 39  # 40 or more times use a table, which agrees with single times only to rounding
     looked_at = 0
     for motion in every_law():
         if motion.t.size == 0:  # a motion that jams at once has no samples
@@ -68,7 +68,7 @@ def test_the_order_of_times_changes_no_bit() -> None:
     assert looked_at > 50
 
 
-def test_scene_at_takes_the_state_of_a_rolling_motion() -> None:
+def test_scene_at_returns_the_state_of_a_rolling_motion() -> None:
     """tests/properties/test_restarts.py shows how such a motion continues."""
     scene = SCENES["standing"].replace(impulse=Impulse(jx=0.1))
     whole = simulate(scene, 4.0)

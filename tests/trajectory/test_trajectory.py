@@ -75,8 +75,8 @@ ENDING = {
 @pytest.mark.parametrize("scene", ENDING.values(), ids=ENDING)
 def test_rolling_is_valid_until_its_law_fails(scene: Scene) -> None:
     """At valid_until a law fails: |F| = friction N, or N = 0. Before this time the ground can hold
-    the body. The bound is 1e-9 of the weight: time and angle are good to some 1e-15, and the forces
-    change by at most some hundred weights a second."""
+    the body. The bound is 1e-9 of the weight: time and angle are accurate to some 1e-15, and the
+    forces change by at most some hundred weights per second."""
     with pytest.warns(ValidityWarning, match="rolling is valid until t = "):
         trajectory = simulate(scene, 10.0, model="rolling")
     assert trajectory.status is Status.VALIDITY_LOST and not trajectory.success
@@ -208,7 +208,7 @@ def test_no_array_of_a_motion_is_writable(model: Any) -> None:
 
 
 def test_the_default_settings_are_created_only_once() -> None:
-    """A setting given by name is checked even where it equals the default."""
+    """Settings that are given but equal the defaults make no difference."""
     scene = Scene(2.0, 1.0, omega=3.2)
     motion = simulate(scene, [1.0])
     assert motion.settings is simulate(scene, [2.0]).settings
@@ -225,7 +225,7 @@ def test_reason_and_stats_are_computed_on_demand() -> None:
 
 
 def test_names_of_any_text_type_become_plain_strings() -> None:
-    """The process that reads a pickle may not have the other type."""
+    """The process that reads a pickle may not know the original type."""
 
     class Mine(str):
         def __reduce__(self) -> Any:

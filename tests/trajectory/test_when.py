@@ -24,8 +24,8 @@ def all_times(motion: Trajectory, name: str, values: Any, direction: int = 0) ->
 
 
 def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Floats:
-    """Allowed error of the quantity at the returned times: its change in 8 ulp of the time, and
-    twice the 8 ulp to which touches are resolved."""
+    """Allowed error of the quantity at the returned times: its change in 8 ulps of the time, plus
+    twice the 8 ulps to which touches are resolved."""
     near = np.maximum(times, 1e-3)
     aside = np.clip(np.stack([times - 1e-6 * near, times + 1e-6 * near]), 0, motion.t_end)
     before, after = (getattr(motion.sol(t), name) for t in aside)
@@ -46,7 +46,7 @@ def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float])
         times, sign = dense.t[clear], np.sign(less[clear])
         rises, falls = (np.searchsorted(t, times, side="right") for t in (rising, falling))
         assert np.array_equal(np.diff(rises) - np.diff(falls), np.diff(sign) / 2), (name, value)
-        for t in np.concatenate([rising, falling]):  # up to 4 ulp apart, times are merged
+        for t in np.concatenate([rising, falling]):  # merged if up to 4 ulps apart
             assert np.abs(found - t).min() <= 8 * EPS * t
         jumps = np.isin(found, times_of_events(motion)) if name == "omega" else np.zeros(found.size)
         smooth = found[~jumps.astype(bool)]
@@ -82,8 +82,8 @@ def test_passages_of_many_values_agree_with_brute_force(first: int) -> None:
 
 
 def test_passages_of_a_rocking_body_follow_its_period() -> None:
-    """A body released at 0.5 rad rests every half period and is upright a quarter period later; the
-    lowest point of the centre, z = b, is a touch. Times of 1e5 s are known to their rounding."""
+    """A body released at 0.5 rad stops every half period and lies flat a quarter period later. The
+    lowest height of the centre, z = b, is touched, not crossed."""
     motion = simulate(rl.scenes.rocking, 1e5)
     period = rl.period(motion.scene)
     stops, flat = np.arange(0, 1e5, period / 2), np.arange(period / 4, 1e5, period / 2)
@@ -137,8 +137,8 @@ def test_events_can_be_selected_by_their_kinds() -> None:
 
 
 def test_a_distant_angle_is_found_but_a_height_passed_too_often_is_rejected() -> None:
-    """In 1e9 half turns a body passes through an angle once, and this time is found quickly. The
-    body passes through a height too often."""
+    """In 1e9 s the body passes through an angle once, but through a height too often to list the
+    times."""
     motion = simulate(rl.scenes.rolling, [0.0, 1e9])
     angle = 4e8 * math.pi
     (t,) = motion.when(theta=angle)
@@ -150,7 +150,7 @@ def test_a_distant_angle_is_found_but_a_height_passed_too_often_is_rejected() ->
         motion.when(function=lambda m: np.sin(m.theta))
 
 
-def test_a_constant_value_counts_only_where_it_starts() -> None:
+def test_a_constant_value_is_found_only_where_it_starts() -> None:
     still = simulate(Scene(2.0, 1.0, x=3.0), 5.0)
     for given in ({"theta": 0.0}, {"omega": 0.0}, {"x": 3.0}, {"z": 1.0}, {"contact_x": 3.0}):
         assert still.when(**given).tolist() == [0.0]  # type: ignore[call-overload]
@@ -249,7 +249,7 @@ def test_a_function_with_values_of_any_size_is_searched() -> None:
     assert half == pytest.approx(5e299, rel=1e-15)
 
 
-def test_when_warns_only_where_completeness_is_not_proved() -> None:
+def test_when_warns_only_if_completeness_is_not_proved() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for scene in (rl.scenes.report, rl.scenes.rocking, rl.scenes.slope, rl.scenes.slip):

@@ -36,7 +36,7 @@ class Peer:
         self.prepared: list[float] = []
 
     def begin(self, setting: float) -> Callable[[str], None]:
-        """Return a function to be called before an end or samples."""
+        """Return a function that is called before the end or the samples are computed."""
         self.prepared.append(setting)
         return lambda what: None
 
@@ -75,7 +75,7 @@ def only(found: WorkPrecision, name: str) -> Any:
 
 @pytest.mark.parametrize("off", [1e-3, 1e-7])
 def test_an_error_is_measured_at_its_true_size(off: float) -> None:
-    """A constant error of theta has its size at the end, in the mean and at its largest."""
+    """A constant error of theta is equally large at the end, in the mean and at its maximum."""
     run = only(raced(Peer(off=off)), "toy")
     for name in ("largest", "final", "l2", "linf"):
         assert run.value(name) == pytest.approx(off, rel=1e-6)
@@ -181,7 +181,7 @@ SUITABLE = {
 
 
 @pytest.mark.parametrize(("scene", "first"), SUITABLE.values(), ids=SUITABLE)
-def test_the_suitable_method_runs_without_being_named(scene: Scene, first: str) -> None:
+def test_the_suitable_method_runs_by_default(scene: Scene, first: str) -> None:
     found = work_precision(scene, 0.5, **QUICK)
     told(found.names)
     assert found.names[0] == first
@@ -259,7 +259,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 class Timed(Peer):
-    """Exact rolling with error = setting; spends time in preparing, in first calls and in calls."""
+    """Exact rolling with error = setting that spends time on preparation, first and later calls."""
 
     def __init__(
         self, name: str, clock: Clock, *, once: float = 0.0, always: float = 0.0,
@@ -292,7 +292,7 @@ SET_UPS = {
 
 
 @pytest.mark.parametrize("how", SET_UPS.values(), ids=SET_UPS)
-def test_set_up_time_leaves_no_run_out(how: dict[str, float], clock: Clock) -> None:
+def test_set_up_does_not_count_towards_the_time_limit(how: dict[str, float], clock: Clock) -> None:
     """A set-up of 4 s does not count towards the 2 s for all runs, so every run of 1 us is made."""
     found = raced(Timed("late", clock, **how), tolerances=LADDER, max_seconds=2.0)
     late = [run for run in found.runs if run.name == "late"]
@@ -346,7 +346,7 @@ def test_a_slow_contender_takes_no_time_from_the_others(clock: Clock) -> None:
 
 
 def test_every_contender_runs_at_the_coarsest_setting(clock: Clock) -> None:
-    """The coarsest setting runs for every end, however little time there is."""
+    """The coarsest setting runs for every end time, however little time there is."""
     peers = [Timed(f"way {i}", clock, call=1.0) for i in range(5)]
     found = work_precision(
         ROTATION, [1.0, 2.0], peers=peers, methods=[], tolerances=[1e-2, 1e-3], rounds=2,

@@ -77,8 +77,7 @@ def test_a_notebook_shows_the_least_time_of_each_method() -> None:
 
 
 def test_the_verdict_states_no_value_that_was_not_computed() -> None:
-    """The verdict leaves out both numbers if the reference lasts longer than the package's
-    motion."""
+    """The error of the reference and the attainable error are left out if they are unknown."""
     unknown = replace(FOUND.references[0], floor=0.0, attainable=float("nan"))
     said = replace(FOUND, references=(unknown,)).verdict().splitlines()[0]
     assert said == ("To t = 2 s, judged by exact rolling, at the sample times and the end:")

@@ -56,7 +56,7 @@ def test_less_accuracy_is_attainable_near_the_separatrix() -> None:
 
 
 def test_less_accuracy_may_be_attainable_in_the_middle_than_at_the_end() -> None:
-    """The attainable error agrees with 40-digit derivatives at its times, by another quadrature."""
+    """The attainable error agrees with derivatives from another quadrature in 40 digits."""
     scene = Scene(2.0, 1.0, omega=math.sqrt(2 * 9.81 / 2.25) * (1 + 1e-9))
     t_end = 0.72 * period(scene)
     judge = Judge(scene, t_end, 12, None)
