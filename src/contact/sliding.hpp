@@ -110,7 +110,7 @@ struct SlideMotion {
 struct SlideSeries {
     SlideMotion motion;
     LongSeries slip;
-    LongSeries rolled;    // h omega, rate of the path
+    LongSeries rolled;    // h omega, the velocity of the centre if it rolled
     LongSeries pressure;  // C = h^3 c, the scaled c
     LongSeries response;  // V = k^2 u B, the scaled B
     LongSeries height2;   // u = h^2

@@ -68,8 +68,8 @@ double derivative(const std::array<double, Size>& series, double z) {
     return sum;
 }
 
-// Four doubles, in one register if the processor has registers of this size (numerics/wide.hpp).
-// The results have the same bits as those for single doubles.
+// Four doubles, held in one register where the build and the processor allow it
+// (numerics/wide.hpp). Results are bit-identical to those of scalar arithmetic.
 using Quad = double __attribute__((vector_size(4 * sizeof(double))));
 
 // Order of the power series that follow a motion piece by piece. A higher order makes a piece

@@ -101,7 +101,7 @@ def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
     ("friction", "lever", "theta", "inertia"),
     [(0.0, 0.5, -0.08463, 0.01), (1.33, 0.05, 0.62, None)],
 )
-def test_rolling_resistance_alone_can_jam_a_light_body(
+def test_resistance_alone_can_jam_a_body_of_small_inertia(
     friction: float, lever: float, theta: float, inertia: float | None
 ) -> None:
     """The body jams if k^2 + h'(h' - s mu h + s' delta) <= 0. For mu = 0 this needs delta > 2 k."""

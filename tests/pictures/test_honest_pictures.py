@@ -50,8 +50,8 @@ def test_curves_of_motions_with_three_samples_follow_the_motion(motion: rl.Traje
         assert np.max(off) <= 3e-3 * np.ptp(values), name
 
 
-def test_a_uniform_grid_with_as_many_points_misses_the_spikes_of_a_thin_body() -> None:
-    """Hence the test above fails if curves have uniform points."""
+def test_a_uniform_grid_of_1001_points_misses_the_spikes_of_a_thin_body() -> None:
+    """Hence curves need points that are denser at the spikes."""
     motion = MOTIONS["very thin"]
     values = data(rl.plot_forces(motion, ax=new_axes()).normal[0])[1]
     even = motion.sol(np.linspace(0.0, float(motion.t[-1]), 1001)).normal_force

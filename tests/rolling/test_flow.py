@@ -171,8 +171,9 @@ def test_a_nearly_round_body_released_near_its_tip_falls(rounder: float) -> None
 
 
 def separatrix_speeds(a: float, b: float, theta: float) -> list[float]:
-    """Doubles near the roll-over speed whose energy equals that of the tip in the package: these
-    motions neither return nor pass the tip in a million seconds (their neighbours take 50 s)."""
+    """Speeds near the roll-over speed at which the energy, as computed by the package, equals that
+    at the tip. Motions with these speeds neither turn back nor pass the tip within a million
+    seconds; those with neighbouring doubles do so within about 50 s."""
     speed = thresholds(a, b).roll_over_speed
     around = [speed + k * math.ulp(speed) for k in range(-6, 7)]
     resting = math.pi / 2 if a > b else math.pi

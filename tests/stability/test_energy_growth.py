@@ -5,8 +5,8 @@ collocation does not drift. With compensated sums and stages solved to the last 
 are a random walk: errors grow like time^0.5 in energy and like time^1.5 in phase (E. Hairer,
 R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231).
 
-The motion rocks, so that theta stays small and determines the energy to its last digits. In a
-rotation theta grows, and determines the energy as well only where the ellipse lies flat.
+The body rocks, so theta stays small and determines the energy to the last digit. In a rotation
+theta grows, and its rounding limits the accuracy of the energy except where the ellipse lies flat.
 """
 
 import math

@@ -22,12 +22,12 @@ Long = Any  # arrays of np.longdouble
 
 
 class Outline(NamedTuple):
-    """Geometry [m] at the angles of a trajectory, in long double."""
+    """h, h' and h'' [m] and psi - theta [rad] at the angles of a trajectory, in long double."""
 
     h: Long
     slope: Long
     curvature: Long
-    lead: Long  # psi - theta, a continuous angle
+    lead: Long  # psi - theta, continuous
     lead_rate: Long  # d lead / d theta
 
 

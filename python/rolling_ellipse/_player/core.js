@@ -7,7 +7,7 @@ const [FEWEST, MOST, TURN] = [300, 3000, 0.2]; // fewest and most intervals, tur
 export class Core {
   /** Load the core from its bytes; throws an error if the page may not use WebAssembly. */
   static async of(bytes) {
-    const nothing = new Proxy({}, { get: () => () => 0 }); // the core needs nothing from its system
+    const nothing = new Proxy({}, { get: () => () => 0 }); // stubs: the core uses no system services
     const { instance } = await WebAssembly.instantiate(bytes,
       { env: nothing, wasi_snapshot_preview1: nothing });
     instance.exports._initialize();

@@ -163,10 +163,10 @@ def _key(task: str, seed: int | None, measured: str | None) -> Key:
 def _known(
     task: str, seed: int | None, measured: str | None
 ) -> tuple[float, list[tuple[tuple[str, ...], float]]]:
-    """Return the relative tolerance (without that for rounding), and answers with their mistakes.
+    """Return the relative tolerance, and each known answer with the mistakes that lead to it.
 
-    The right answer comes first. The answers that follow from single mistakes and from pairs of
-    mistakes come next, and then the answers to other tasks.
+    The tolerance excludes the half unit of the fourth digit that `_allowed` adds. The right answer
+    comes first, then those that follow from one or two mistakes, and the answers to other tasks.
     """
     of = numbered(seed)[task]
     right = answer(of)

@@ -261,7 +261,8 @@ void set_quarter(PhaseTime<T>& phase) {
         if (any(map.quarter == infinity)) phase.quarter_turn = {map.quarter, T{}};
     }
     phase.half_turn = {2 * phase.quarter_turn.high, 2 * phase.quarter_turn.low};
-    // The time from the flat position to the steps, from integrals of the cubics.
+    // The time from the flat position to each step: dt/dy is interpolated by a cubic through four
+    // neighbouring steps, and the cubic is integrated exactly.
     phase.time[0] = T{};
     for (int i = 0; i < most; ++i) {
         phase.time[i + 1] = phase.time[i] + map.step * (13.0 / 24 * (f[i] + f[i + 1]) -
