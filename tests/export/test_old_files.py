@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from rolling_ellipse import _core
 from rolling_ellipse.benchmark._problem import FOLDER as PROBLEMS
 
 OLD = Path(__file__).with_name("old_files")
@@ -40,6 +41,22 @@ def test_an_old_folder_is_read_as_scenes_without_rolling_resistance() -> None:
     assert first.scene == rl.Scene(2.0, 1.0, theta=0.2, friction=0.5, z=2.5)
     assert second.scene.theta == 0.4
     assert first.t.tolist() == [0.0, 0.5, 1.0]
+
+
+CODES = {  # of schema 4
+    _core.MODELS: "auto rolling multipliers contact",
+    _core.METHODS: "auto exact dop853 dopri5 rk4 gauss radau",
+    tuple(each.name for each in _core.Ending): "COMPLETED MAX_STEPS STEP_TOO_SMALL STEP_TOO_LARGE"
+    " MAX_EVENTS JAMMED UNDETERMINED VALIDITY_LOST NEVER",
+    tuple(each.name for each in rl.EventKind): "SLIP STICK REVERSE LIFT_OFF IMPACT REST JAM BLOW",
+    tuple(each.name for each in rl.Mode): "ROLLING SLIDING FLIGHT REST",
+}  # fmt: skip
+
+
+def test_codes_in_folders_keep_their_names() -> None:
+    """Folders store the place of a name in its list, so new names must follow the old ones."""
+    for names, old in CODES.items():
+        assert list(names[: len(old.split())]) == old.split()
 
 
 def test_motions_from_before_blows_are_read_with_the_effects_of_impacts(

@@ -10,6 +10,7 @@ import pytest
 import rolling_ellipse as rl
 from oracles.paths import ROOT
 from rolling_ellipse import Outcome
+from rolling_ellipse._ask.words import LANGUAGES
 from rolling_ellipse._player import blows
 
 BRACES = re.compile(r"\{\w+\}")
@@ -60,13 +61,14 @@ def test_each_language_has_a_complete_table_of_texts() -> None:
     assert rl.explore(rl.scenes.drop, language=german).words == german
     assert {each.name for each in Outcome} < german.keys()
     for folder in ("python/rolling_ellipse/_ask", "docs/live"):
-        english, german = (
+        english, *others = (
             json.loads((ROOT / folder / f"words_{each}.json").read_text("utf-8"))
-            for each in ("en", "de")
+            for each in LANGUAGES
         )
-        assert list(english) == list(german)
-        for key, text in english.items():  # both have the same placeholders
-            assert sorted(BRACES.findall(text)) == sorted(BRACES.findall(german[key])), key
+        for other in others:
+            assert list(english) == list(other)
+            for key, text in english.items():  # both have the same placeholders
+                assert sorted(BRACES.findall(text)) == sorted(BRACES.findall(other[key])), key
 
 
 def test_every_sentence_of_the_core_is_translated() -> None:

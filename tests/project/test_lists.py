@@ -14,14 +14,14 @@ from typing import NamedTuple
 import peers
 import pytest
 from oracles.paths import ROOT
-from rolling_ellipse import EventKind, Scene
+from rolling_ellipse import EventKind, Scene, _core
 from rolling_ellipse._ask.settings import Settings
 from rolling_ellipse._motion.quantities import QUANTITIES
 
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 CORE, PACKAGE, PEERS = ROOT / "src", ROOT / "python" / "rolling_ellipse", ROOT / "benchmarks/peers"
 ROOMS = {path for path in PACKAGE.iterdir() if path.is_dir() and path.name != "report"}
-NAME = re.compile(r"`([\w/.]+\.(?:hpp|cpp|pyi|py))`")
+NAME = re.compile(r"`([\w/.]+\.(?:hpp|cpp|pyi|py|rst))`")
 
 
 def of_room(room: str) -> list[str]:
@@ -49,28 +49,43 @@ KINDS = {
         "tests/border/test_stub.py", "tests/core/golden.cpp",
         "tests/contact/test_contact_reference.py", "tests/core/test_core.py", "src/describe.cpp",
         "reference/contact_motion.py", "reference/make_contact_reference.py", "tools/same_bits.py",
-        "python/rolling_ellipse/benchmark/_equations.py",
+        "python/rolling_ellipse/benchmark/_equations.py", "docs/api/motion.rst",
+        "python/rolling_ellipse/benchmark/_events.py", "python/rolling_ellipse/_motion/growth.py",
+        "python/rolling_ellipse/_motion/passages.py", "tests/trajectory/test_event_table.py",
+        "tests/player/test_site.py",
+    )),
+    "a status": Kind([ending.name for ending in _core.Ending], (
+        "tests/border/test_stub.py", "src/messages.cpp", "src/describe.cpp",
+        "src/bindings/batch.cpp", "python/rolling_ellipse/__main__.py",
+        *(f"python/rolling_ellipse/{name}.py" for name in (
+            "_motion/status", "_motion/trajectory", "_motion/differences", "_motion/sensitivity",
+            "_pictures/panels", "_verbs/batches/answers", "_verbs/batches/ends",
+            "_verbs/simulate")),
     )),
     "a method": Kind(
         ["dopri5"],  # the tableaus call it DormandPrince5
         ("src/integrator/explicit_tableaus.hpp", "src/integrator/steps.hpp",
          "src/integrator/runge_kutta.hpp", "tests/integrator/test_tableaus.py",
          "tests/integrator/test_integrators.py", "tools/fuzz/scenes.py",
+         "tests/core/golden.cpp", "tests/core/test_core.py",
          "benchmarks/bench_calls.py"),
     ),
     "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"],
                       ("python/rolling_ellipse/_pictures/comparison.py",
                        "tests/player/test_site.py", "tests/project/test_docstrings.py",
-                       "tests/project/test_gallery.py")),
+                       "tests/project/test_gallery.py", "docs/api/pictures.rst")),
     "a verb": Kind(of_room("_verbs"), (
         "python/rolling_ellipse/__init__.py", "tests/project/test_docstrings.py",
         "tests/border/test_layout.py", "tests/border/test_stub.py", "tests/oracles/every_verb.py",
-        "tests/player/test_site.py",
+        "tests/player/test_site.py", "python/rolling_ellipse/_command_line.py",
+        "python/rolling_ellipse/__main__.py", "tests/project/test_command_line.py",
     )),
-    "a column of a motion": Kind([each.name for each in QUANTITIES],
+    "a computed quantity of a motion": Kind([each.name for each in QUANTITIES],
                                  ("tests/export/test_tables.py", "src/outcome/passages.hpp",
                                   "python/rolling_ellipse/_pictures/errors.py",
-                                  "python/rolling_ellipse/_pictures/panels.py")),
+                                  "python/rolling_ellipse/_pictures/panels.py",
+                                  "python/rolling_ellipse/_motion/samples.py",
+                                  "src/bindings/solution.cpp", "tests/oracles/units.py")),
     "a setting": Kind([field.name for field in fields(Settings)], (
         "tests/border/test_fields.py", "tests/batches/test_simulate_many.py",
         "tests/core/motions.hpp", "tests/export/test_old_files.py", "tools/live/live.cpp",
@@ -87,6 +102,11 @@ KINDS = {
         "python/rolling_ellipse/_motion/export/strict.py", "tests/export/test_old_files.py",
         "python/rolling_ellipse/_verbs/films/film.py",
         "python/rolling_ellipse/_verbs/films/starts.py",
+        "python/rolling_ellipse/_verbs/films/camera.py", "src/contact/flight.cpp",
+        "python/rolling_ellipse/benchmark/_equations.py", "tests/oracles/units.py",
+        "python/rolling_ellipse/benchmark/_events.py", "src/scene/field.hpp",
+        "python/rolling_ellipse/_motion/constraints.py", "tests/scene/test_texts.py",
+        "tests/batches/test_simulate_many.py",
     )),
     "a law of restitution": Kind(["Stronge", "Poisson", "Newton"], (
         "src/contact/contact.cpp", "src/contact/flight.cpp", "tests/border/test_stub.py",
@@ -107,8 +127,9 @@ PLACES = {
     "a field of Scene": r"\bScene \w+\{\}|level_scene\(",
 }
 UNTESTED = {
-    "another law of rolling resistance", "another shape than the ellipse", "a way out of Python",
-    "a word of a page", "a sentence of a reason", "a stored quantity", "a format of films",
+    "another law of rolling resistance", "another shape than the ellipse", "an export",
+    "a word of a page", "a language", "a sentence of a reason", "a value stored in files",
+    "a renamed field", "a format of films",
 }  # fmt: skip
 
 
@@ -185,3 +206,4 @@ def test_every_list_is_tested() -> None:
     """The exceptions are lists for things that do not exist yet, or whose files share no word."""
     listed = set(re.findall(r"\n\* \*\*(.+?)\*\*", PAGE.partition("## To add")[2]))
     assert listed == {*KINDS, *PLACES, *UNTESTED}
+    assert all(named_by_the_page(kind) for kind in listed - {"another shape than the ellipse"})

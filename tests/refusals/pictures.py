@@ -186,7 +186,7 @@ REFUSALS: list[Row] = [
     *wrong(rl.explore, {"scene": scenes.report},  # at most 40 sqrt(2 m / 9.81 m/s^2) = 18.06 s
            t_end=[0.0, -1.0, NAN, INF, 18.1, 1e9, "1", [1.0], object()]),
     *wrong(rl.explore, {"scene": scenes.report},
-           language=["fr", 1, {"title": "x"}, WORDS | {"x": "x"}, WORDS | {"lang": 1},
+           language=["xx", 1, {"title": "x"}, WORDS | {"x": "x"}, WORDS | {"lang": 1},
                      WORDS | {"title": "\ud800"},
                      WORDS | {"place": "{F}"}],
            live=[1, "yes"]),

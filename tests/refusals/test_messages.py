@@ -95,6 +95,8 @@ def all_provoked(tmp_path_factory: pytest.TempPathFactory) -> list[Provoked]:
 def is_refusal(name: str | type[Exception], found: Provoked) -> bool:
     if not isinstance(name, str):
         return isinstance(found.error, name)
+    if found.error is None:
+        return False
     said = str(found.error)
     whole = not (said + "_")[len(name)].isidentifier()  # not only the start of a longer name
     begins = said.startswith(name) and whole and " must " in said
