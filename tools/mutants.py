@@ -59,7 +59,7 @@ NEAREST = {
     "rolling": ["rolling", "integrator", "contact"],
     "scene": ["scene", "contact", "refusals"],
     "_ask": ["scene", "refusals", "border"],
-    "_motion": ["trajectory", "contact", "border"],
+    "_motion": ["trajectory", "contact", "border", "sensitivity"],
     "_command_line": ["project", "border", "trajectory"],
     "_verbs": ["trajectory", "outcome", "refusals", "proof", "rolling", "fit"],
     "batches": ["batches", "refusals"],

@@ -8,6 +8,7 @@ import pickle
 import re
 from collections.abc import Callable
 from html.parser import HTMLParser
+from itertools import chain
 from operator import eq, ne
 from pathlib import Path
 from typing import Any
@@ -100,6 +101,17 @@ def test_members_equal_only_their_names_and_codes(kind: Any) -> None:
     members = np.array(list(kind))
     if not coded:
         assert [(members == each.name).sum() for each in kind] == [1] * len(kind)
+
+
+def test_public_objects_are_immutable() -> None:
+    public = (vars(each).values() for each in (rl.benchmark, rl.impacts, rl.course, rl.report))
+    named = (getattr(rl, name) for name in rl.__all__)
+    kinds = [each for each in (*named, *chain(*public)) if isinstance(each, type)]
+    kinds = [each for each in kinds if dataclasses.is_dataclass(each)]
+    assert len(kinds) > 25
+    for kind in kinds:
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            setattr(object.__new__(kind), dataclasses.fields(kind)[0].name, None)
 
 
 REPORT, JUMP = rl.scenes.report, rl.simulate(rl.scenes.jump, 2.0)

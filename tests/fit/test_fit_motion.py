@@ -147,6 +147,7 @@ def test_the_picture_shows_the_film() -> None:
     fit = fit_motion(TIMES, HOLES["x"], theta=HOLES["theta"], scene=GUESS, free=FREE, sigma=SIGMA)
     chart = fit.plot()
     assert list(chart.residuals) == ["x", "theta"] and len(chart.axes) == 3
+    assert chart.axes[0].get_shared_x_axes().joined(chart.axes[0], chart.axes[2])
     for name, line in chart.measured.items():
         assert np.allclose(np.asarray(line.get_ydata()), HOLES[name], equal_nan=True, atol=1e-12)
     seen = np.asarray(chart.residuals["x"].get_ydata()) * SIGMA["x"]

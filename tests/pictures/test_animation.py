@@ -144,6 +144,9 @@ def test_arrows_show_the_forces_of_the_ground_and_the_blow(scene: rl.Scene) -> N
         if N:
             foot = np.array(arrows.get_offsets())[0] @ [1, 1j]
             assert foot == pytest.approx(turn * at.contact_x[i], abs=1e-9)
+            named = np.array(arrows.get_offsets()) @ [1, 1j] + [1, 1, 0] * seen
+            places = [complex(*name.get_position()) for name in strip.names]
+            assert places == pytest.approx(named, abs=1e-9)  # tips of forces, foot of the blow
 
 
 @pytest.mark.parametrize("panel", ["phase", "forces", "energy"])

@@ -13,6 +13,7 @@ from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axe
 from oracles.pictures import figure_of, luminance, overlapping, texts_of
 from rolling_ellipse._pictures import sampling
 from rolling_ellipse._pictures.comparison import Comparison, labels_of
+from rolling_ellipse._pictures.labels import apart
 
 OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 
@@ -122,6 +123,11 @@ def varied(**fields: Any) -> rl.Scene:
 )  # fmt: skip
 def test_labels_name_the_fields_that_differ(scenes: list[rl.Scene], names: list[str]) -> None:
     assert labels_of(motions(*scenes), None) == names
+
+
+def test_positions_moved_apart_stay_within_their_bounds() -> None:
+    """A block of two around 8.95 would reach 9.45."""
+    assert apart(np.array([0.0, 8.9, 9.0]), 1.0, 0.0, 9.0).tolist() == [0.0, 8.0, 9.0]
 
 
 @pytest.mark.parametrize("difference", [1e-3, 1e-9, 2**-52])
