@@ -202,8 +202,10 @@ def test_every_name_on_the_page_occurs_in_the_sources() -> None:
     assert names <= set().union(*known)
 
 
-def test_every_list_is_tested() -> None:
+def test_every_list_is_tested_and_in_the_index() -> None:
     """The exceptions are lists for things that do not exist yet, or whose files share no word."""
-    listed = set(re.findall(r"\n\* \*\*(.+?)\*\*", PAGE.partition("## To add")[2]))
-    assert listed == {*KINDS, *PLACES, *UNTESTED}
-    assert all(named_by_the_page(kind) for kind in listed - {"another shape than the ellipse"})
+    text = PAGE.partition("## To add")[2]
+    listed = re.findall(r"\n\* \*\*(.+?)\*\*", text)
+    index = " ".join(text.partition("The lists: ")[2].partition(".\n")[0].split())
+    assert listed == index.split(" · ") and {*listed} == {*KINDS, *PLACES, *UNTESTED}
+    assert all(named_by_the_page(kind) for kind in {*listed} - {"another shape than the ellipse"})
