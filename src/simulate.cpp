@@ -59,8 +59,8 @@ EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity)
     return end;
 }
 
-// Whether the contact model computes the motion. That model proves each arc of rolling itself, and
-// only up to the end time.
+// Whether it is clear without a proof that the contact model computes the motion. That model proves
+// each arc of rolling itself, and only up to the end time.
 bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
     if (asked.model == Model::contact || asked.is_for_events()) return true;
     return from.on_slope && asked.model == Model::automatic && asked.method == Method::automatic &&

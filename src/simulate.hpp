@@ -52,7 +52,8 @@ std::optional<Losses> losses(const Solution& solution);
 
 // The duration of a full swing or a full turn of the rolling motion that starts from the scene;
 // infinite at rest or, on level ground, if the body only approaches the tip. Throws
-// std::invalid_argument if the body does not roll at its start or runs downhill for ever.
+// std::invalid_argument if there is rolling resistance, or if the body does not roll at its start
+// or runs downhill for ever.
 double period(const Scene& scene);
 
 // A number as text with six digits.

@@ -1,10 +1,10 @@
-"""Call all public functions with odd and extreme arguments.
+"""Call the public functions with odd and extreme arguments.
 
 A case is a few lines: a call, then expressions that use its result. Hypothesis draws the cases,
 which depend only on the seed, and shortens a case that fails. The cases run in a separate
 process, so that a crash or an endless call is a finding like any other. `fuzz/calls.py`,
-`fuzz/scenes.py` and `fuzz/values.py` draw; `fuzz/judge.py` and `fuzz/promises.py` define what must
-not happen. A finding is printed as lines to paste.
+`fuzz/scenes.py` and `fuzz/values.py` draw the cases; `fuzz/judge.py` and `fuzz/promises.py` define
+what must not happen. A finding is printed as lines to paste.
 
 Run:  python tools/fuzz_api.py --calls 20000 --seed 1
       python tools/fuzz_api.py --code "rl.certify(1)"        (judges only these lines)
@@ -51,7 +51,7 @@ class Failed(AssertionError):
 
 
 class Hunt:
-    """Searches with one seed until all cases have run; each search ends at a new finding."""
+    """Repeated searches until all cases have run; each search ends at a new finding."""
 
     def __init__(self, process: Process, seed: int) -> None:
         self.process, self.seed = process, seed

@@ -45,7 +45,7 @@ def weights(c: list[mpf], end: mpf) -> matrix:
 
 
 def nodes(degree: int, less: int = 0) -> list[mpf]:
-    """Roots c of P_s(2c - 1) - less P_(s-1)(2c - 1), ascending."""
+    """Roots c of P_s(2c - 1) - less P_(s-1)(2c - 1), ascending, with s = degree."""
 
     def polynomial(c: mpf) -> mpf:
         return mp.legendre(degree, 2 * c - 1) - less * mp.legendre(degree - 1, 2 * c - 1)

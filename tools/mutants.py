@@ -187,7 +187,7 @@ class Workshop:
 
     def failing(self, *arguments: str) -> str:
         """The first test that fails, or "one that takes too long" if the tests take more than 60 s
-        and five times the usual time; "" if they pass."""
+        plus five times the usual time; "" if they pass."""
         usual = 60.0 if arguments else 1500.0
         seconds = 60 + 5 * self.took.get(arguments, usual)
         begin = time.monotonic()

@@ -1,5 +1,5 @@
-// The page with a slider and a field for every number of the scene. Each frame shows the motion for
-// the current numbers. Needs all modules of the player.
+// The page with sliders and fields for the scene, the blow and the end time. Each frame shows the
+// motion for the current numbers. Needs all modules of the player.
 
 const FULL = 6; // number of half turns at which colours reach full strength
 const SETTLED = 300; // time without changes after which the address is updated [ms]

@@ -26,7 +26,7 @@ RUNS = [  # form, tolerance, entries whose local errors are tested
 
 
 def scored(problem: benchmark.Problem) -> np.ndarray:
-    """Return the tabulated times, except the start, at which states are scored."""
+    """Return the tabulated times at which states are scored, without the start."""
     times = problem.times[problem.times > 0]
     return times[(times < problem.horizon) | (problem.horizon == problem.t_end)]
 

@@ -115,7 +115,7 @@ class Soft:
         decay = math.log(self.e) if self.e else -math.inf
         self.zeta = 1.0 if decay == -math.inf else -decay / math.hypot(decay, math.pi)
         self.returns, self.d0 = False, 0.0  # whether restitution has begun, and d at its end
-        self.side = self.turn = 0  # signs of slip and rotation; 0 if the contact sticks
+        self.side = self.turn = 0  # sign of the slip, 0 if it sticks; sign of a resisted rotation
 
     def touch(self, y):
         """Return h, o, the overlap and its rate."""
@@ -161,7 +161,7 @@ class Soft:
         return self.turn * y[5]
 
     def stick_or_slip(self, y):
-        """Choose whether a contact without slip sticks; if N = 0, choose as for N/m = 1 m/s^2."""
+        """Choose whether a contact without slip sticks; if N = 0, choose as for N = 1 m/s^2."""
         normal = self.normal(y) or 1.0
         friction = self.holding(y, normal)
         self.side = 0 if abs(friction) <= self.mu * abs(normal) else -int(np.sign(friction))
@@ -210,7 +210,7 @@ class Soft:
 
 
 def error(row, s, law):
-    """Return the largest error of x_dot, z_dot, k omega after an impact, else of t, x, theta."""
+    """Return the largest error: of x_dot, z_dot, k omega at impacts, of t, x, theta otherwise."""
     t, y = Soft(row, s, law).follow()
     impact = row["event"] == "IMPACT"
     found = np.array(y[3:] if impact else [t, y[0], y[2]])

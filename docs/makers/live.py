@@ -1,7 +1,8 @@
 """Write the live page, which contains the core: python docs/makers/live.py [page.html]
 
-It is the page of `explore(scenes.report)` with sliders for the whole scene, a map of half turns and
-the energies, from the files of docs/live. The page needs no other file and no network.
+It is the page of `explore(scenes.report)` with sliders for the scene, the blow and the end time, a
+map of half turns, and the energies; docs/live has the sources of these parts. The page needs no
+other file and no network.
 """
 
 import json

@@ -284,7 +284,7 @@ def calls() -> str:
 
 
 def lead() -> str:
-    """Return a sentence for the first page with the ratio of the best peer's time to `flow`'s."""
+    """Return text for the first page with the ratio of the best peer's time to `flow`'s."""
     race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
     peers = {run.name for run in race.runs if "peer" in run.tags}
@@ -365,7 +365,7 @@ def engine_table() -> str:
 
 
 def engine_cell(score: dict[str, Any]) -> str:
-    """Return the error over condition, in bold if the answer passes, or a dash if there is none."""
+    """Return the error over the condition number (bold if passed), any wrong answer, or a dash."""
     if score["over_condition"] is None:
         return "–"
     error = f"{score['over_condition']:.0e}"

@@ -31,7 +31,7 @@ def main(part):
     page = PAGE.read_text(encoding="utf-8")
     names, printed = {"__name__": "__main__"}, io.StringIO()
     os.chdir(DATA)
-    for name in first:  # MJX reports missing packages when it is imported
+    for name in first:  # outside the capture: on import, MJX reports missing packages
         exec(block(name, page), names)
     with contextlib.redirect_stdout(printed):
         exec(block(last, page), names)

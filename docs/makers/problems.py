@@ -49,7 +49,7 @@ def main() -> None:
 
 
 def problems() -> dict[str, Any]:
-    """Return the data of all problems, sorted by family; numbers are strings with all digits."""
+    """Return the data of all problems, sorted by family; numbers are strings, as in the files."""
     found = {
         path.stem: json.loads(path.read_text(encoding="utf-8"), parse_float=str, parse_int=str)
         for path in sorted(DATA.glob("*.json"))

@@ -26,7 +26,7 @@ grid of scenes     `simulate_many`; ``returns="theta"`` gives arrays over the gr
                    only the last states, and `load_many` reads a folder
 fit to a film      `read_track`, `fit_motion`; to measured impacts: `impacts`
 derivatives        ``motion.sensitivity(wrt="omega")``, `flow_jacobian`; ``motion.growth()``: how
-                   fast small changes grow, and how long doubles resolve a chaotic motion
+                   fast small changes grow, and how long double precision resolves a chaotic motion
 your own solver    `rolling_equation`: the ODE; `flow`: its solution; `work_precision`: a race;
                    ``Trajectory.from_arrays`` takes your arrays, to draw, film or compare them
                    (`plot_error`)

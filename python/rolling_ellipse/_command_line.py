@@ -212,7 +212,7 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
 
 
 def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
-    """Run an engine or a user's function; report an error in one sentence that gives the line."""
+    """Score an engine or a user's function; an error is reported with the line that raised it."""
     mine = _function(name)
 
     def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:

@@ -17,7 +17,8 @@ _Three = tuple[FloatArray, FloatArray, FloatArray]
 _Arrays = dict[str, FloatArray]
 _Tables = dict[str, npt.NDArray[Any]]
 _Columns = list[FloatArray]  # arguments, as `broadcast` returns them
-_Passages = tuple[list[FloatArray], list[str]]  # times for each value; where times may be missed
+# The times for each value, and phrases that say where times may be missing
+_Passages = tuple[list[FloatArray], list[str]]
 
 class _Named:
     """Enums whose members also equal their names (`equal_to_names` in `_ask.printing`)."""

@@ -59,7 +59,7 @@ _LEADING = 50  # number of best points for the whole series that are refined
 _SPLITS = 25  # number of random splits into halves; these determine the scatter to within 10 %
 _FEWEST = 20  # minimum number of impacts for estimating errors from halves of the series
 _BLOCK = 2**20  # largest number of impacts predicted in one call
-_COARSE, _FINE = 24, 64  # cells per coefficient: grids that locate the peak; last grid
+_COARSE, _FINE = 24, 64  # cells per coefficient of grids that locate the peak, and of the last one
 _DEPTH = 25.0  # the next grid covers the points whose likelihood exceeds exp(-25) times the maximum
 _ZOOMS = 12  # largest number of coarse grids; each is at least 1/12 as wide as the previous one
 
@@ -314,9 +314,9 @@ def fit(
     right angle, which is infinite friction). The grid is then refined around the 50 best points for
     the whole series and around the best point for each of 50 random halves of it. Eight refinements
     reduce the step to 1e-4. The halves are included because the median has many local minima, and
-    each serious candidate is the best point for some half. The fit to a half is the best of all
-    points tried. The fits to halves scatter about the fit to the series as the fit to the series
-    scatters about the truth; for a linear least-squares fit this is exact [1]_.
+    serious candidates are usually the best point for some half. The fit to a half is the best of
+    all points tried. The fits to halves scatter about the fit to the series as the fit to the
+    series scatters about the truth; for a linear least-squares fit this is exact [1]_.
 
     The likelihood is normal in x_dot, z_dot and k omega: N numbers, three for each impact.
     Integrated over sigma it is Gamma(N/2)/2 (pi S)^(-N/2), where S is the sum of squared errors

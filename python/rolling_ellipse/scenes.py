@@ -5,7 +5,7 @@
                 rolls over
 ``rocking``     released from 0.5 rad: it rocks
 ``rolling``     3.2 rad/s lying flat: it rolls over and over
-``separatrix``  2.952967565 rad/s lying flat, 1 + 1e-6 times the speed that just reaches the tip
+``separatrix``  2.952967565 rad/s lying flat, (1 + 1e-6) times the speed that just reaches the tip
 ``circle``      a = b = 1 m, 2 rad/s: uniform rolling
 ``thin``        b = 0.02 m, released from 0.3 rad
 ``slope``       3 rad/s down a slope of 0.1 rad, friction 0.8
@@ -16,9 +16,9 @@
 ==============  ====================================================================================
 
 These scenes are for pictures; the problems of `benchmark` are for comparing simulators. ``slip``
-and ``jump`` are in both sets. The other problems have finite friction and heights with few digits,
-or start farther from thresholds, so that any simulator can represent them and rounding does not
-decide the outcome (docs/benchmark.md compares the two sets).
+and ``jump`` are in both sets. The other problems have finite friction and drop heights with few
+digits, or start farther from thresholds, so that any simulator can represent them and rounding does
+not decide the outcome (docs/benchmark.md compares the two sets).
 
 Examples
 --------

@@ -63,8 +63,8 @@ void watch_main_thread();
 using Piece = std::function<void(py::ssize_t, const std::function<void()>&)>;
 void run_each(py::ssize_t n, int workers, const Piece& body);
 
-// Splits 0 .. n into chunks and runs body(begin, end) on each, as `run_each` does with its pieces.
-// The results of a chunk do not depend on the thread that computes it.
+// Splits 0 .. n into chunks and runs body(begin, end) on each; several chunks are the pieces of a
+// `run_each`. The results of a chunk do not depend on the thread that computes it.
 inline constexpr py::ssize_t chunk = 1024;
 using Range = std::function<void(py::ssize_t, py::ssize_t)>;
 void run_interruptible(py::ssize_t n, int workers, const Range& body);

@@ -1,5 +1,5 @@
 // The parts of the Python module. Only this folder depends on Python; it converts values to NumPy
-// arrays and back and computes nothing itself.
+// arrays and back and leaves the mechanics to the core.
 #pragma once
 
 #include <pybind11/native_enum.h>

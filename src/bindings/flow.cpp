@@ -11,7 +11,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-constexpr py::ssize_t scenes_at_once = 512;  // scenes per kernel call; their starts take 64 kB
+constexpr py::ssize_t scenes_at_once = 512;  // scenes per kernel call; their starts take 61 kB
 
 RollingStart validated_start(const Body& body, double theta, double omega) {
     validate(body);

@@ -77,9 +77,9 @@ class Gap {
     // The time of a contact, one of the two neighbouring doubles between which the gap closes. At
     // this time the height of the centre is set to h. Always choosing the later time would raise
     // the body and add 1e-16 of its energy at each contact, so the time with the smaller gap is
-    // chosen. The later time is used only if the body turns by more than 1e-8 between the two
-    // times, since the gap then bends by a rounding error or more, or if the earlier time is the
-    // start of the flight.
+    // chosen, with two exceptions: the later time is used if the body turns by more than 1e-8
+    // between the two times, since the gap then bends by a rounding error or more, or if the
+    // earlier time is the start of the flight.
     double closes(const Bracket& between) const {
         constexpr double small_turn = 1e-8;
         const auto [low, high] = between;

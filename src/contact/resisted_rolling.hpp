@@ -22,7 +22,7 @@ std::optional<double> cancelled_moment(const SlidingBody& body, const Geometry& 
                                        const DoubleDouble& angle);
 
 // With u = h^2, p = h h', the lever d of the normal force ahead of the contact, and C = h^3 c,
-//     W = u M = u (k^2 + u) + p^2 + d h p
+//     W = u (k^2 + u) + p^2 + d h p
 //     W u omega' = g sin(alpha) u^2 h - p (C + u^2 omega^2) - d h C,
 //     h^3 N/m = C + p u omega',    h^3 F/m = u (u omega' + p omega^2 - g sin(alpha) h).
 // The slip and the work are 0. `centre.torque` is the result of `cancelled_moment`.

@@ -41,10 +41,10 @@ void sample(const Flight& flight, const double* times, std::size_t n, ContactSam
     }
 }
 
-// While bounces settle, velocities change linearly in time, and the rate of the gap falls linearly
-// from the first rebound to 0. In all samples, the body therefore moves away from the ground, as it
-// does at the start. Each coordinate is the integral of its rate, plus a term linear in time that
-// supplies the rest of its total change.
+// While bounces settle, omega and x_dot change linearly in time, and the rate of the gap falls
+// linearly from the first rebound to 0. In all samples, the body therefore moves away from the
+// ground, as it does at the start. theta and x are the integrals of their rates, plus a term linear
+// in time that supplies the rest of the total change.
 void sample(const Settling& settling, const double* times, std::size_t n, ContactSample* samples) {
     const auto& [axes, lasts, start, end, angle] = settling;
     const double rebound = gap_rate(start, geometry(axes, start.theta));

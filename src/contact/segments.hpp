@@ -100,7 +100,7 @@ class Sampler {
 
   private:
     const Motion& motion_;
-    std::optional<FlowSampler> flow_;  // set if the motion is exact rolling throughout
+    std::optional<FlowSampler> flow_;  // set for one SI segment of exact rolling on level ground
 };
 
 // The times at which the steps of an integrated motion start and end; empty for all other motions.

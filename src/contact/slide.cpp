@@ -163,7 +163,7 @@ class SlideIntegration {
             reach_ = piece.reach;
         }
         SlidePoint next = moved(piece, reach_);
-        // The powers of rates beyond about 1e100 overflow.
+        // Rates beyond about 1e100 overflow despite the choice of the unit.
         if (!is_finite(next)) {
             slide_.pieces.pop_back();
             return SlideStop::no_progress;
@@ -204,8 +204,8 @@ class SlideIntegration {
     }
 
     // Computes the slip as x_dot - h omega where |x_dot| + |h omega| is smaller than the largest
-    // slip so far. As a sum of changes, the slip would have the rounding errors of its largest
-    // value.
+    // slip since it was last computed this way. As a sum of changes, the slip would have the
+    // rounding errors of its largest value.
     void keep_slip() {
         const double rolled = at_.h * double(last_.omega);
         const double size = std::abs(double(last_.x_dot)) + std::abs(rolled);
@@ -218,7 +218,7 @@ class SlideIntegration {
     SlideClock clock() const { return scaled_response_ ? SlideClock::slowed : SlideClock::time; }
 
     // The rate that determines the unit of time: 1 + |omega| + the rate at which the force changes
-    // B, if the latter is large. With this unit, no power overflows.
+    // B, if the latter is large. This unit keeps the powers of high rates in range.
     double rate() const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);

@@ -43,8 +43,8 @@ SlidingBody sliding_body(const Scene& scene, const Geometry& at, double omega, d
     return body;
 }
 
-// The response c and B = Gnn - mu s Gtn, from which N = c/B per mass, physics (50); with infinite
-// friction F = c/Gtn and N = 0, physics (52).
+// The response c and B = Gnn - mu s Gtn (s is `side`), from which N = c/B per mass, physics (50);
+// with infinite friction F = c/Gtn and N = 0, physics (52). Rolling resistance adds a term to B.
 Response response(const SlidingBody& body, const Geometry& at, double omega) {
     const double c = free_acceleration(at, body.gravity.into, omega);
     const double gnn = 1 + at.dh * at.dh / body.gyration2;
@@ -365,7 +365,7 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll,
     const bool weightless = is_weightless(at, scene.ground_gravity().into, state.omega, blur);
     if (!weightless) return continuation_at(scene, state, at, slip, may_roll, blur);
     // A weightless body flies on its way up to the tip: c falls there, since h'' is least at the
-    // tip. On a slope it may still roll, with N = h h' (g sin(alpha) - h' omega^2)/D.
+    // tip. On a slope it may still roll, with N/m = h h' (g sin(alpha) - h' omega^2)/D.
     if (at.dh * state.omega > 0 && !is_equilibrium(at)) {
         const Continuation now = continuation_at(scene, state, at, slip, may_roll, blur);
         return scene.slope != 0 && now.mode == Mode::rolling ? now : Continuation{Mode::flight};

@@ -17,8 +17,8 @@ struct SlidingBody {
     double gyration2;
     GroundGravity gravity;
     double side;
-    // Shares of the contact force along the normal and along the ground: 1 and -mu s; for infinite
-    // friction, 0 and -s.
+    // Shares of the contact force along the normal and along the ground: 1 and -mu side; for
+    // infinite friction, 0 and -side.
     double normal_share;
     double friction_share;
     // The lever of the normal force ahead of the contact, physics (63), and whether its couple

@@ -94,7 +94,7 @@ QuarterPath quarter_path(const Axes& axes, double s, double c) {
     return {contact - geometry(axes, s, c).dh, contact};
 }
 
-// The paths for any angle: those of the whole half turns plus that of the remainder.
+// The paths for any angle: those of the whole half turns plus those of the remainder.
 QuarterPath unwrapped_path(const Axes& axes, double theta) {
     if (axes.a == axes.b) return {axes.a * theta, axes.a * theta};
     const double s = std::sin(theta);

@@ -1,7 +1,7 @@
 // Geometry of an ellipse on straight ground, from its support function.
 //
 // theta is the clockwise rotation of the body; at theta = 0 the axis a is parallel to the ground.
-// All functions hold for a > b, a = b and a < b and for any angle.
+// Unless stated otherwise, functions hold for a > b, a = b and a < b and for any angle.
 #pragma once
 
 #include <cmath>
@@ -79,9 +79,9 @@ inline double over_flat(const FlatView& at, double h) {
     return at.c2 * square(at.sin) / (at.short_axis + h);
 }
 
-// Whether the contact lies vertically below the centre, to within 8 ulp of the height and of the
-// angle. On a slope, the vertical through the centre meets the ground a distance h tan(slope) = h
-// incline downhill of the foot of the perpendicular.
+// Whether the contact lies vertically below the centre, to within 8 epsilon times the height and 8
+// epsilon radians of rotation. On a slope, the vertical through the centre meets the ground a
+// distance h tan(slope) = h incline downhill of the foot of the perpendicular.
 bool is_equilibrium(const Geometry& at, double incline = 0.0);
 
 // The angle psi - theta = atan2(h', h) from the ground's normal to the contact, in (-pi/2, pi/2).

@@ -58,8 +58,8 @@ class Stagnation {
     // The largest of the most recent changes, relative to the scale of its component.
     double left(const Vector<N>& size) const { return largest_.cwiseQuotient(size).maxCoeff(); }
 
-    // True if the most recent changes are negligible relative to the first ones or to the scale.
-    // (An iteration that diverges slowly from tiny values has tiny changes, too.)
+    // True if the most recent changes are far smaller than the first ones, or near rounding errors.
+    // (A larger fixed bound would accept an iteration that diverges slowly from tiny values.)
     bool settled(const Vector<N>& size) const {
         constexpr double share_of_first = 1e-6;
         constexpr double near_rounding = 1e-11;

@@ -66,7 +66,7 @@ struct DenseOutput {
     }
 };
 
-// Number of steps between two calls of the checkpoint; they take 10 us to 4 ms.
+// Number of steps between two calls of the checkpoint; these steps take 10 us to 4 ms.
 inline constexpr std::size_t steps_between_checks = 64;
 
 struct Tolerance {

@@ -152,9 +152,9 @@ double ConstrainedBody::project(CoordinateState& state) const {
 }
 
 // Projects by Newton's method along the rolling direction until the excess energy stops shrinking.
-// Along this direction the energy changes by D (omega domega - pull dtheta), where `pull` is the
-// component of the force divided by D. The correction minimises domega^2 + (g/L) dtheta^2, which is
-// regular even at turning points.
+// Along this direction the energy changes by inertia (omega domega - pull dtheta), where `pull` is
+// the component of the force divided by `inertia`. The correction minimises domega^2 +
+// (g/L) dtheta^2, which is regular even at turning points.
 double ConstrainedBody::project(CoordinateState& state, double energy) const {
     constexpr int most_iterations = 20;
     const double rate2 = root_of_squares(gravity_.into, gravity_.along) / length_;

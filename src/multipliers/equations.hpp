@@ -54,9 +54,9 @@ class ConstrainedBody {
     // The largest residual at q, max(|f2|/L, |f3|/L, |f4|), L being the long semi-axis.
     double largest_residual(const Coordinates& q) const;
 
-    // Projects a state to the nearest one, in the kinetic metric, that satisfies the constraints
-    // and has the given energy per mass, if any; returns the largest residual before the
-    // projection.
+    // Projects a state to the nearest one, in the kinetic metric, that satisfies the constraints;
+    // then, if an energy per mass is given, moves it along the rolling direction until it has this
+    // energy. Returns the largest residual before the projection.
     double project(CoordinateState& state) const;
     double project(CoordinateState& state, double energy) const;
 

@@ -232,7 +232,7 @@ WEIGHTED = tuple(lines for weight, lines in QUESTIONS for _ in range(weight))
 
 
 def filled(draw: Draw, of: Body, line: str) -> str:
-    """Replace each name in braces in a line by a randomly drawn expression."""
+    """Replace each name in braces in a line with a randomly drawn expression."""
 
     def picture() -> str:
         name = draw.pick(*(name for name in PICTURES if name != "rl.plot_phase_map"))
@@ -350,7 +350,7 @@ NAMES_OF = {
 
 
 def files(draw: Draw, of: Body) -> list[str]:
-    """A file or another object in its place, and a call that reads or writes at this path."""
+    """A file or another object at a path, and a call that reads or writes at this path."""
     line, kind = draw.pick(*ON_FILES), draw.pick(*["file"] * 8, *damage.THINGS)
     names = next((each for part, each in NAMES_OF.items() if f".{part}" in line), ("a",))
     content = filled(draw, of, draw.pick(*CONTENTS))

@@ -1,4 +1,4 @@
-"""Run the lines of a case and find broken promises, crashes and hangs."""
+"""Run the lines of a case and find broken promises, unexpected exceptions and hangs."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ OWN_WARNINGS = (
     "ValidityWarning", "InconsistentStartWarning", "StabilityWarning", "CompletenessWarning",
 )  # fmt: skip
 _FIELDS = {field.name for kind in (rl.Scene, rl.Impulse) for field in fields(kind)}
-# Parts of messages about several arguments at once.
+# Parts of messages that need not name a single argument.
 _TOGETHER = ("arguments must broadcast", "missing 1 required", "unsupported pickle",
              "cannot pickle", "of roll.rock must")  # fmt: skip
 _NOT_FINITE = re.compile(

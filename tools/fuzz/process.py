@@ -28,7 +28,7 @@ CAUSES = re.compile(
 
 
 class Finding(NamedTuple):
-    """A broken promise, with the lines that lead to it."""
+    """A broken promise, a crash or a hang, with the lines that lead to it."""
 
     kind: str
     what: str

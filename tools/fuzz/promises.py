@@ -151,7 +151,7 @@ def _blur(found: rl.Trajectory) -> float:
 
 
 def same_mode(state: Any, trajectory: rl.Trajectory) -> None:
-    """Compare `initial_state` with the first sample."""
+    """Compare the mode of `initial_state` with that of the first sample."""
     modes = [rl.Mode(code) for code in trajectory.mode[:1]]
     if trajectory.events and trajectory.events[0].t == 0:  # the first mode has no duration
         modes = [trajectory.events[0].state_before.mode]

@@ -88,7 +88,7 @@ def friction(draw: Draw, _: Body) -> float:
 
 
 def impulse(draw: Draw, of: Body) -> str:
-    """Draw an impulse that gives a body of 1 kg about its natural speed, mostly within the body."""
+    """Draw an impulse of up to 3 kg times the natural speed, mostly at a point within the body."""
     strength = 3 * of.length / of.clock
     reach = draw.pick(0.7 * min(of.values["a"], of.values["b"]), of.length)
     values = [repr(size * draw.between(-1, 1)) for size in (strength, strength, reach, reach)]

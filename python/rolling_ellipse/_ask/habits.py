@@ -28,8 +28,9 @@ _Found = TypeVar("_Found")
 def meant(word: str, names: Iterable[str]) -> str:
     """Return the end of a message about an unknown name: the names that were probably intended.
 
-    These are the package's names for a habitual word. If it has none, the valid name with the most
-    similar spelling is suggested; failing that, all names that share a dotted part with the word.
+    These are the package's names for a habitual word. If there are none, the valid name with the
+    most similar spelling is suggested; failing that, all names that share a dotted part with the
+    word.
     """
     from difflib import get_close_matches  # takes a millisecond; needed only after a mistake
 

@@ -31,7 +31,7 @@ class Impulse:
         Components along the ground and away from it [N s]. Pass them by name: positional ones, as
         in ``Impulse(48, 1.5)``, look like the arguments of `press` and give a DeprecationWarning.
     dx, dz : float or array_like
-        Point of attack relative to the centre, in ground axes [m].
+        Point of application relative to the centre, in ground axes [m].
 
     Raises
     ------
@@ -178,7 +178,7 @@ def numbers(name: str, value: Any) -> Any:
 
 
 def let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
-    """Let the core check the worst value of each piece; its error names `argument`."""
+    """Let the core check the most extreme value of each piece; an error names `argument`."""
     for first, piece in pieces(values):
         worst = int(np.abs(piece).argmax())  # the first NaN, or the largest magnitude
         try:

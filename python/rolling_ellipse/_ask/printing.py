@@ -136,7 +136,7 @@ def html_table(caption: str, rows: Iterable[Row], head: Row = ()) -> str:
 
 
 class Listed:
-    """A dataclass that prints as a table of its fields: names, values and units."""
+    """Base class of dataclasses that print as a table of fields: names, values and units."""
 
     _units: ClassVar[dict[str, str]] = {}
 

@@ -18,8 +18,8 @@ Report = Callable[[int, int | None], Any]
 def reporting(progress: bool | Report, unit: str, name: str = "") -> Iterator[Report]:
     """Yield a function to call with two counts: done so far, and the total (None if unknown).
 
-    A callable `progress` is yielded unchanged. For True the function shows a bar labelled `name`;
-    for False it does nothing.
+    A callable `progress` is yielded unchanged. For True the function shows the progress, labelled
+    `name`; for False it does nothing.
     """
     if callable(progress):
         yield progress

@@ -19,7 +19,7 @@ def in_words(sentences: Sequence[Sentence]) -> str:
 
 
 def blow_in_words(impulse: Impulse) -> str:
-    """Return the components [N s] and the point of attack [m] of an impulse as text."""
+    """Return the components [N s] and the point of application [m] of an impulse as text."""
     return (
         f"({impulse.jx:g}, {impulse.jz:g}) N s at ({impulse.dx:g}, {impulse.dz:g}) m from the "
         "centre"

@@ -8,7 +8,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 _Owner = TypeVar("_Owner")
 _Value = TypeVar("_Value")
-UNREAD = "_unread"  # key in an object's `__dict__` of a function that returns its late fields
+UNREAD = "_unread"  # `__dict__` key for a function that returns the object's late fields
 _new, _set = object.__new__, object.__setattr__  # looked up once, for speed
 
 

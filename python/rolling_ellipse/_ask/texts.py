@@ -36,7 +36,7 @@ def to_json(scene: Any) -> str:
     >>> rl.Scene.from_json(text)
     Scene(a=2.0, b=1.0, mass=10.0, omega=3.2)
     """
-    from json import dumps  # json takes a tenth of the package's import time
+    from json import dumps  # imported here because json loads slowly
 
     given = _given(scene)
     endless = {name: "inf" for name, value in given.items() if value == math.inf}
@@ -177,7 +177,6 @@ def _number(name: str, value: Any) -> Any:
 
 
 def _linked(name: str, text: str) -> Any:
-    """Return the number written in a link."""
     value: Any = text
     with suppress(ValueError):
         value = float(text)

@@ -34,5 +34,4 @@ def joined(words: Mapping[str, str], sentences: Sequence[Sentence], digits: int)
 
 
 def filled(words: Mapping[str, str], key: str, digits: int = 4, **values: float) -> str:
-    """Return a text with its placeholders filled in."""
     return BRACES.sub(lambda name: written(values[name[1]], words, digits), words[key])

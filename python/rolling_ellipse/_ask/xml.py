@@ -85,7 +85,7 @@ def gravity(scene: Any) -> tuple[float, float, float]:
 def _filled(template: str, scene: Any, **others: Any) -> str:
     if scene.friction == math.inf:
         raise ValueError(f"friction must be finite in {template[6:].upper()}, got inf")
-    from pathlib import Path  # pathlib takes a tenth of the package's import time
+    from pathlib import Path  # imported here because it loads slowly
 
     inertia = scene.mass * scene.gyration2
     return Path(__file__).with_name(template).read_text(encoding="utf-8").format(

@@ -4,7 +4,8 @@ A part has a few events and starts in the middle of an arc, in the state of the 
 Let M be the derivatives of its final state with respect to its initial state, and P those with
 respect to the parameters of the body. If S are the derivatives of the initial state, those of the
 final state are M S + P. A small change at the start of a part must not alter the events of that
-part, but may alter those of later parts. Hence derivatives exist up to a growth of 1e13.
+part, but may alter those of later parts. Hence derivatives exist even where changes grow by up to
+1e13 over the whole motion.
 """
 
 from __future__ import annotations
@@ -25,8 +26,9 @@ from .samples import FREE, Pair
 from .trajectory import Trajectory
 
 EVENTS = 3  # number of events per part
-# Shortest flight in which a part may end, in units of sqrt(L/g). It rises to L/1000, a hundred
-# times the steps that give differences with ten digits. A lower hop would need smaller steps.
+# Shortest flight in which a part may end, in units of sqrt(L/g), with L = max(a, b). It rises to
+# L/800, about a hundred times the steps that give differences with ten digits. A lower hop would
+# need smaller steps.
 _HOP = 0.1
 # Bound on the relative difference between the derivatives along the computed arcs and the exact
 # ones, in roundings times the growth of the motion. The largest difference in 120 motions with a
@@ -125,7 +127,7 @@ def _derivatives(part: Trajectory, names: list[str | None], side: int) -> Pair:
 def parts_of(motion: Trajectory, events: int) -> list[Part]:
     """Split a motion into parts of `events` events, or more if an arc cannot be cut.
 
-    A part that does not reproduce its events is merged with the part before it.
+    A part that does not reproduce its events is merged with a neighbouring part.
     """
     cuts = _cuts(motion, events)
     while True:

@@ -136,7 +136,7 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
 
     Lengths are divided by the longer semi-axis. Rates are divided by max|omega| as well, or by
     sqrt(gravity/length) for a motion without rotation. Quantities that the ground does not
-    constrain are NaN: f1, f2, gap and slip in flight, and f1 and slip in a slide.
+    constrain are NaN: f1, f2, df2/dt, gap and slip in flight, and f1 and slip in a slide.
     """
     scene, residuals = motion.scene, motion.constraint_residuals()
     length = max(scene.a, scene.b)

@@ -23,7 +23,7 @@ RATES = ("x_dot", "z_dot", "omega", "x_ddot", "z_ddot", "omega_dot")
 STEPS = 0.016 * 0.5 ** np.arange(23)  # tried in this order, relative to the input's natural size
 WORST = 1e-3  # relative error above which there is no derivative
 FINE = 1e-8  # relative error below which no better step is needed
-_GROWN = 8.0  # trials end when the error exceeds the smallest one by this factor
+_GROWN = 8.0  # trials end when the error exceeds the smallest one, below FINE, by this factor
 _UNITS = 8  # error bound [ulp] of states and times that the package guarantees
 
 _LEAST_LEVER = 1e-200  # [m]; replaces a rolling resistance of 0
@@ -43,8 +43,8 @@ def differenced(
 ) -> tuple[FloatArray, FloatArray]:
     """Return derivatives from values at the nodes of a rule (first axis), and rounding errors.
 
-    `moved` contains the changes of the input as rounded to doubles. A value may be wrong by
-    `_UNITS` roundings of itself and of an input of magnitude `scale`.
+    `moved` contains the changes of the input as rounded to doubles. Each value may have an error of
+    `_UNITS` ulp, plus the effect of as many ulp of an input of magnitude `scale`.
     """
     weights = RULES[side][1].tolist()
     # The order of summation is the same for one vector and for many
@@ -66,7 +66,8 @@ class Best:
     """For each vector, the best of the derivatives computed with smaller and smaller steps.
 
     The error is the rounding error plus the larger of the distances to the results of the previous
-    and the next step. The trials of each vector end independently, when its error has grown.
+    and the next step. The trials of each vector end independently, once an error below `FINE` has
+    been reached and the error has grown again.
 
     Attributes
     ----------
@@ -77,7 +78,7 @@ class Best:
     """
 
     def __init__(self, shape: tuple[int, ...], least: Any) -> None:
-        # Errors are relative to the largest component of a vector, or to `least` if that is larger
+        # `FINE` is relative to the largest component of a vector, or to `least` if that is larger
         self.value, self._least = np.zeros(shape), least
         self.error, self.step = np.full(shape[1:], np.inf), np.zeros(shape[1:])
         self._done = np.zeros(shape[1:], bool)
@@ -185,7 +186,7 @@ def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> Float
 
 
 def moved(motion: Trajectory, settings: Settings, changes: dict[str, float]) -> Trajectory:
-    """Return the motion for changed inputs, by the same model; reject one with other events."""
+    """Return the motion for changed inputs, with the same model; reject one with other events."""
     values = {name: value_of(motion.scene, name) + change for name, change in changes.items()}
     other = Trajectory.computed(changed(motion.scene, values), settings, np.array([motion.span]))
     if difference := unlike(motion, other):
@@ -206,7 +207,7 @@ def unlike(motion: Trajectory, other: Trajectory) -> str:
 
 
 def _order(motion: Trajectory) -> list[tuple[str, float]]:
-    """Return names and times of the start, events, turns and end, which neighbours must share."""
+    """Return names and times of the start, events, turns and end; neighbours share the names."""
     known = zip(kinds_of(motion.events), knots_of(motion)[1:-1].tolist(), strict=True)
     turns = (("a turn", t) for t in motion._solution.turns.tolist())
     events = sorted([*known, *turns], key=itemgetter(1))
@@ -227,7 +228,7 @@ def knots_of(motion: Trajectory) -> FloatArray:
 
 
 def joints_of(motion: Trajectory) -> FloatArray:
-    """Return `knots_of` and the turns, the times at which the couple of resistance changes."""
+    """Return `knots_of` and the turns, the times at which the couple of resistance reverses."""
     return np.sort(np.concatenate([knots_of(motion), motion._solution.turns]))
 
 

@@ -42,7 +42,7 @@ class Event(FieldsOnly):
         State just before and just after the event. The state after an impact or a blow includes the
         impulse of the ground, and that after an impact also the lost energy.
     energy_before, energy_after : float
-        Kinetic and potential energy of the two states [J].
+        Sum of kinetic and potential energy of the two states [J].
     theta, x : float
         Angle [rad] and centre [m] at the event; an event does not change them.
 

@@ -42,7 +42,7 @@ def from_arrays(
     Each track is interpolated by the fourth-degree polynomial through the five samples around the
     nearest one. Rates have errors of fourth order, and accelerations, which give the forces, of
     third order. Before the first sample the body keeps its first position. It flies if its gap
-    exceeds 0.01 max(a, b); otherwise it slides if its contact slips by more than
+    exceeds 0.01 max(a, b); otherwise it slides if its contact slips faster than
     0.01 sqrt(gravity max(a, b)), and rolls if not. There are no events: within two samples of an
     impact, rates and forces are wrong.
 

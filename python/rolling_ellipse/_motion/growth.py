@@ -38,10 +38,10 @@ class Growth(FieldsOnly):
         Times [s]: one in the middle of the arc after each event, and the end.
     log : ndarray, shape (m, k)
         Sums of ``log |R_ii|`` up to these times (see `growth`). The first column is the logarithm
-        of the growth of a change of the first coordinate. The sum of the first two columns is that
-        of the area spanned by changes of the first two coordinates, and so on for volumes. An entry
-        is -inf once an event has made its change dependent on those of the previous columns: when a
-        contact starts without a rebound, or its slip ends.
+        of the growth of a change of the first coordinate. The sum of the first two columns is the
+        logarithm of the growth of the area spanned by changes of the first two coordinates, and so
+        on for volumes. An entry is -inf once an event has made its change dependent on those of the
+        previous columns: when a contact starts without a rebound, or its slip ends.
     message : str
         The reason if `t` ends before the motion does, otherwise "".
     known_until : float
@@ -109,7 +109,7 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
     and include the jumps at events (saltation matrices [2]_). They map changes of all six
     coordinates, in units of L = max(a, b) and sqrt(L/g). They are applied to orthonormal vectors,
     initially the axes `wrt`, and a QR decomposition makes the results orthonormal again [1]_. The
-    relative error of each factor is about 1e-11. If a diagonal entry of R is smaller than its
+    relative error of each ``R_ii`` is about 1e-11. If a diagonal entry of R is smaller than its
     error, it counts as 0 if an event may have removed the change; otherwise the growth ends with a
     message. It also ends if there is no derivative, for example if a body falls flat and would
     settle on one of its ends if it were tilted.
@@ -160,8 +160,8 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
 def _stretched(part: Trajectory, basis: FloatArray, free: tuple[str, ...]) -> Pair:
     """Map orthonormal columns through a part; return Q and R of the result.
 
-    A column is 0 in Q and R once its change is lost. A ValueError gives the reason if the
-    derivatives are too inaccurate.
+    Once its change is lost, a column is 0 in Q, and its diagonal entry in R is 0. A ValueError
+    gives the reason if the derivatives are too inaccurate.
     """
     value, errors = (each[..., len(part.t) - 1, :] for each in by_state(part, free))
     error = math.sqrt(len(STATE)) * float(errors.sum())  # bound for the image of a unit vector

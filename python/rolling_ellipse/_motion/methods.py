@@ -38,7 +38,6 @@ class _Later:
 
 
 def bind_methods(owner: type) -> None:
-    """Bind the methods from other modules to the class."""
     for module, names in METHODS.items():
         for name in names:
             setattr(owner, name, _Later(owner, module, name))

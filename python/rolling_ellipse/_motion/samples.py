@@ -27,7 +27,7 @@ _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
 class ContactSamples(NamedTuple):
-    """The samples of a contact motion other than theta, omega and x."""
+    """The samples of a contact motion other than t, theta, omega and x."""
 
     z: FloatArray
     x_dot: FloatArray
@@ -146,7 +146,6 @@ def coordinate_pair(name: str, values: Any, shape: tuple[int, ...]) -> Pair:
 
 
 def contact_samples(values: Any, size: int) -> ContactSamples:
-    """Return ContactSamples with checked, read-only arrays."""
     if not isinstance(values, ContactSamples):
         raise TypeError(f"contact must be ContactSamples or None, got {shown(values)}")
     *columns, mode = ContactSamples._fields
@@ -189,7 +188,6 @@ class Sample:
 
 
 def sample_at(motion: Trajectory, t: float) -> Sample:
-    """Return the state of a motion at a time in [0, t_end]."""
     scene = motion.scene
     if motion.method == GIVEN:
         state = motion.sol(t)

@@ -55,10 +55,10 @@ class Sensitivity(FieldsOnly):
         Derivatives of the times of the m events. They do not depend on the samples.
     error, event_times_error : ndarray, shape (k,)
         Estimated error of each column of `state` and of `event_times`, relative to its largest
-        entry, or to one natural unit per natural size of the input if that is larger. The natural
-        units of the state are L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b), and that
-        of time is sqrt(L/g). The estimate includes the errors of a stepped method and the growth of
-        rounding errors in the motion.
+        entry, or to one natural unit per natural size of the input (roughly its magnitude) if that
+        is larger. The natural units of the state are L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with
+        L = max(a, b), and that of time is sqrt(L/g). The estimate includes the errors of a stepped
+        method and the growth of rounding errors in the motion.
 
     Examples
     --------

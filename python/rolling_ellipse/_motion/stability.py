@@ -22,11 +22,11 @@ _OF_RTOL = 10.0  # largest accepted relative change of the energy under error co
 def advice(motion: Trajectory) -> str | None:
     """Return a sentence of advice if a motion has lost energy or left its constraints, or None.
 
-    The energy and the constraint errors are checked at the steps and between them. Rolling
-    conserves energy; its change is divided by the largest kinetic plus |potential| energy, with
-    x = 0 at the start. A projection enforces the constraints for any step size and so hides the
-    local error, but the constraint error before the projection is of the same order. If this error
-    exceeds a tenth of the long semi-axis, the projected state belongs to another motion.
+    The energy and the constraint errors are checked at the steps and between them. The change of
+    the energy, which rolling conserves, is divided by the largest kinetic plus |potential| energy,
+    with x = 0 at the start. A projection enforces the constraints for any step size and so hides
+    the local error, but the constraint error before the projection is of the same order. If this
+    error exceeds a tenth of the long semi-axis, the projected state belongs to another motion.
     """
     losses = motion._solution.losses()
     if losses is None:

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 # Attributes for files, pickles and `sol`, which `dir` omits
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 _Number = TypeVar("_Number", bound=np.generic)
-# Reasons that are omitted because `initial_state` gives them; only the first reason can be one
+# Reasons omitted because `initial_state` gives them; only the first reason can be among these
 _NOT_NEW = ("no_blow", "sticks", "in_the_air")
 
 
@@ -141,7 +141,7 @@ class Trajectory(FieldsOnly):
         Stored data of the model "contact": z, x_dot, z_dot, normal_force, friction_force, mode at
         the samples.
     kept_events : tuple of Event, or None
-        Events read from a file. If they are None, `events` solves the motion again.
+        Events read from a file. If they are None, `events` takes them from the solution.
 
     Examples
     --------
@@ -347,7 +347,7 @@ class Trajectory(FieldsOnly):
         if times.size and not (times.min() >= 0 and times.max() <= self.t_end):
             require("t", f"within [0, {self.t_end!r}]", times, (times >= 0) & (times <= self.t_end))
         solution, known = self._solution, vars(self)
-        # The new motion computes whatever has not been computed yet
+        # The new motion computes the fields that are not known yet
         kept = {name: known[name] for name in self.__dataclass_fields__ if name in known}
         return trusted(type(self), kept | sampled(solution, times) | {"_solution": solution})
 

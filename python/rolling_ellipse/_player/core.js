@@ -49,7 +49,8 @@ export class Core {
     return found;
   }
 
-  /** The first outcome after the last blow, as `ask` would report it; keeps the motion of `ask`. */
+  /** The first outcome after the last blow, as `ask` would report it. `samples` still samples the
+   * motion of `ask`. */
   first(scene, end) {
     const answer = this.text(this.call("first", this.numbers(scene, end)));
     if (answer !== answer.toUpperCase()) throw new RangeError(answer);

@@ -8,7 +8,7 @@ const STEPS = { // columns and rows by which each key moves on the map
   Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
 };
 const CELLS = [48, 32]; // columns and rows of the map
-const COARSE = [8, 4, 2, 1]; // sizes of its cells, from the first pass to the last
+const COARSE = [8, 4, 2, 1]; // sizes of the map's cells, from the first pass to the last
 const NEAR = 26; // distance within which a pointer grabs the hand [px]
 const BUDGETS = [10, 6]; // time per frame for the map [ms]: usually, and while numbers change
 
@@ -220,7 +220,7 @@ export class Explorer extends Player {
     return { F, top: view.at(x + d, z + this.length(F)), point: view.at(x + d, z) };
   }
 
-  /** Whether a pointer is near the hand or on the body. */
+  /** Whether the hand can strike, and a pointer is near its arrow or on the body. */
   holds(event) {
     const { top: [u, v], point: [x, y] } = this.hand(this.views[0]);
     const [c, s, p, q] = [x - u, y - v, event.offsetX - u, event.offsetY - v];

@@ -75,7 +75,8 @@ def explore(
     The page contains the core, compiled to WebAssembly, and computes all blows with the same
     results as `simulate` with ``blows``. A button copies the Python code that simulates them. The
     whole page can be used with a keyboard alone. If a browser or a policy forbids WebAssembly, or
-    this installation lacks the file, the page only plays the film of the first blow, and says so.
+    the installed package lacks the compiled core, the page only plays the film of the first blow,
+    and says so.
 
     The page follows the light or dark theme of the user's system, unless it is inside an element
     (such as `<html>`) with the attribute `data-theme="light"` or `"dark"`.

@@ -30,7 +30,7 @@ _MIDDLES = {name: f"{name}_middle" for name in FORCES}
 # Fractions of an interval at which a curve is compared with the motion. Irregular spacing keeps a
 # motion whose period divides the intervals from looking like a straight line.
 _WITHIN = np.array([0.13, 0.31, 0.5, 0.74, 0.9])
-_FORCE = 0.005  # error over (force + weight): at most a pixel in a plot with 84 pixels per weight
+_FORCE = 0.005  # error over (force + weight): a pixel at 1.4 weights and 84 pixels per weight
 _FIRST = 17  # initial number of intervals
 
 
@@ -38,8 +38,8 @@ def track(motion: Trajectory, parts: list[tuple[float, float]], tolerance: float
     """Return the parts (start, end [s]) of a motion as packed columns, and the first index of each.
 
     Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m]. A
-    motion that needs more than `MOST_SAMPLES` samples is rejected. Parts after its end have one
-    sample.
+    motion that needs more than `MOST_SAMPLES` samples is rejected. A part after the end of the
+    motion has one sample.
     """
     last, sampled, starts = float(motion.t[-1]), np.empty(0), []
     for begin, end in parts:

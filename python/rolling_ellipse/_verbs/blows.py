@@ -124,7 +124,7 @@ def required_friction(
         A mapping has the names of Scene's arguments, with numbers or arrays that broadcast, as for
         `simulate_many`.
     to : {"roll", "rest"}
-        "rest" gives the friction with which the body can lie still on its slope, in any position.
+        "rest" gives the friction with which the body can lie still on its slope at some angle.
         It is tan(slope), or infinite if that exceeds ``|a^2 - b^2|/(2 a b)``, the largest ratio
         ``|h'|/h`` of the horizontal and vertical distances between the contact and the centre.
     workers : int or executor
@@ -238,7 +238,7 @@ def _needed_friction(scene: Scene) -> str:
 
 
 def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
-    """Return the press at a distance that gives an angular velocity if the contact sticks."""
+    """Return the press at `distance` that gives the velocity `omega` if the contact sticks."""
     F = _core.press_to(scene.core, distance, omega)
     _require_lever(F, distance)
     if F == 0:

@@ -47,7 +47,7 @@ class Fit:
     covariance : ndarray, shape (k, k)
         Covariance of the parameters in the order of `errors`, from the linearised residuals.
     chi2 : float
-        Sum of the squares of residuals over sigma. If sigma is estimated, it does not test the fit.
+        Sum of (residual/sigma)^2. If sigma is estimated, chi2 does not test the fit.
     residuals : ndarray, shape (n, 3)
         Measured minus fitted x, z [m] and theta [rad], in units of the film; NaN for missing data.
         If the clock is free, frames before the first datum are omitted.
@@ -176,12 +176,13 @@ def fit_motion(
     Notes
     -----
     SciPy's nonlinear least squares [1]_ starts from the scene itself and from straight lines and
-    parabolas through the first frames, each with several coefficients, for longer and longer parts
-    of the film. It then starts from points around the best solutions, because chi2 has many minima.
-    Each parameter is moved by three times its error, and then further, with the others refitted. If
-    the change divided by the square root of the rise in chi2 is larger than the error, this
-    quotient replaces the error; this happens beyond a friction threshold, or if another scene fits
-    equally well. A parameter that the film does not determine keeps its guess.
+    parabolas through the first frames, each with several values of friction and other coefficients,
+    for longer and longer parts of the film. It then starts from points around the best solutions,
+    because chi2 has many minima. Each parameter is moved by three times its error, and then
+    further, with the others refitted. If the change divided by the square root of the rise in chi2
+    is larger than the error, this quotient replaces the error; this happens beyond a friction
+    threshold, or if another scene fits equally well. A parameter that the film does not determine
+    keeps its guess.
 
     The residuals r, r' of neighbouring frames are compared. If they are noise, the sum of r r'
     divided by the sum of (r^2 + r'^2)/2, times the square root of the number of pairs, is normally

@@ -61,7 +61,7 @@ def flow(
     workers : int or executor
         Number of threads, up to 1024 (fewer are used if no more can be started), or -1 for all
         cores; or an executor, as for `simulate_many`, for many millions of elements. The results
-        are the same bit for bit.
+        are bit-identical for any workers.
 
     Returns
     -------

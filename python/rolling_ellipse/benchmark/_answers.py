@@ -137,8 +137,8 @@ def _differences(
 ) -> tuple[list[str], dict[str, Any]]:
     """Return what is wrong with the events, and their counts and errors in time by kind.
 
-    If the problem has no event, the rule of `_events` may still detect one in both motions; its
-    time is then not compared.
+    If the problem has no event, `read_off` may still detect one in both motions; its time is then
+    not compared.
     """
     kinds, wanted = Counter(kind for kind, _ in mine), Counter(kind for kind, _ in known)
     off: dict[str, float] = {}

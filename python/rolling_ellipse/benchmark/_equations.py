@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 ROLLING, SLIDING, FLIGHT = "rolling", "sliding", "flight"
 _QUIET = 1e-3  # time without events after SLIP and LIFT_OFF, in units of sqrt(L/g)
-_LEAST_REBOUND = 1e-7  # in units of sqrt(g L); slower rebounds are lower than an ulp of z
+_LEAST_REBOUND = 1e-7  # in units of sqrt(g L); slower rebounds rise by less than 1e-14 L
 #: Index of each form, and its constraints: 0-2 are f2, f3, f4; 3-6 are f1 and the rates of f2, f3,
 #: f4; 7-10 are the rates of 3-6.
 FORMS = {

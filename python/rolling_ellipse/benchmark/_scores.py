@@ -169,7 +169,7 @@ class Scores(tuple[Score, ...]):
         return float(slope), f"plateau at {errors[-1]:.1e}" if flat else "yes"
 
     def verdict(self) -> str:
-        """Return three sentences: answers, accuracy, and the effect of the setting.
+        """Return sentences on the answers, the accuracy and the effect of the setting.
 
         Examples
         --------
@@ -210,7 +210,8 @@ class Scores(tuple[Score, ...]):
         Parameters
         ----------
         path, ax, figsize
-            As in `rolling_ellipse.plot` and `rolling_ellipse.plot_forces`, with their errors.
+            As in `rolling_ellipse.plot` and `rolling_ellipse.plot_forces`, including the errors
+            raised.
 
         Examples
         --------

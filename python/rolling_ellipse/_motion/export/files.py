@@ -124,8 +124,8 @@ def _arrays(trajectory: Trajectory) -> dict[str, Any]:
 def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) -> _Made:
     """Return the trajectory for a file's JSON values and arrays.
 
-    Raise ValueError unless `save` would write the same values and arrays. Hence no value is
-    converted, filled in or ignored, even if the classes would accept it.
+    Values that an older schema lacks are added. After that, a ValueError is raised unless `save`
+    would write exactly these values and arrays, even if the classes would accept others.
     """
     if about["schema"] == _WITHOUT_RESISTANCE:
         about |= {"schema": _WITHOUT_BLOWS, "scene": strict.with_resistance(about["scene"])}

@@ -174,7 +174,6 @@ def npz_arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[
 
 
 def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArray[Any]:
-    """Return the array in a member of an archive."""
     name = member.filename.removesuffix(".npy")
     if member.compress_type != zipfile.ZIP_STORED:
         raise ValueError(f"{name} must not be compressed")

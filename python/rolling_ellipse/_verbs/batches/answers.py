@@ -91,7 +91,6 @@ def solve(
 
 
 def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
-    """Return the columns of the table `name` by their names."""
     return dict(zip(_COLUMNS[name], tables[name].T, strict=True))
 
 
@@ -152,7 +151,6 @@ class _Part:
         ]
 
     def facts(self, place: int) -> dict[str, Any]:
-        """Return the fields of a motion."""
         tables, (message, samples, events) = self._tables, self.places[place]
         code, numbers = (
             dict(zip(_COLUMNS[name], tables[name][place].tolist(), strict=True))
@@ -325,7 +323,7 @@ def errors_of(
 def dataset_of(
     of: Any, dims: tuple[str, ...], values: Mapping[str, Any], scenes: FloatArray, **more: Any
 ) -> Dataset:
-    """Return the status and quantities of motions as a Dataset, with the scenes as coordinates.
+    """Return status and quantities of motions as a Dataset, with scene arguments as coordinates.
 
     Columns in `more` are treated like the arguments of the scenes.
     """

@@ -26,7 +26,7 @@ CAMERA = ("scale", "ground", "clock")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _BOUNDS |= {"scale": (0.01, 1e5), "clock": (0.0, math.inf)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # bounds: 0.1 to 100 times the guess
-_FINEST, _COARSEST = 1e-15, 1e15  # bounds of sigma/size of the body, for finite squares
+_FINEST, _COARSEST = 1e-15, 1e15  # bounds of sigma/size of the body, so that squares are finite
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ _ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
 
 @dataclass(frozen=True)
 class Contender:
-    """A method or peer, with the interface of peers; a call may have a warning, `advice`."""
+    """A method or peer, with the interface of peers; its call may have a warning, `advice`."""
 
     run: Run  # name, model, method, stabilization and tags
     ladder: str | None  # None if the contender has no setting
@@ -174,7 +174,7 @@ def default_steps(scene: Scene, t_end: float) -> list[float]:
     """Return steps from 1/4 to 1/2048 of a half turn or half swing, up to `t_end` [s]."""
     try:
         half = period(scene) / 2
-    except ValueError:  # on a slope, or if the body does not roll
+    except ValueError:  # a run down a slope, or a body that does not roll
         half = math.inf
     if not math.isfinite(half):
         half = math.pi * math.sqrt(max(scene.a, scene.b) / scene.gravity)
