@@ -47,7 +47,7 @@ def explore(
     ----------
     scene : Scene
         The body before the blow, on the ground or in the air; if it has an impulse, the vertical
-        component and the point of attack are used as the first blow.
+        component and the point of application are used as the first blow.
     t_end : float, optional
         How long each motion is followed [s], up to 40 sqrt(longer semi-axis / gravity); default:
         12 times that root.
