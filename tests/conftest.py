@@ -26,8 +26,8 @@ SHAPES = {
     "kilometres": (1.1e3, 2.3e3),
 }
 
-# Angles near 0, the doubles nearest to multiples of pi/2 and angles beside them, where sin or cos
-# nearly vanishes, and angles thousands of turns away from 0
+# Ordinary angles and angles near 0, the doubles nearest to multiples of pi/2 and angles beside
+# them, where sin or cos nearly vanishes, and angles thousands of turns away from 0
 QUARTER = math.pi / 2
 ANGLES = sorted(
     {

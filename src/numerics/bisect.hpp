@@ -9,13 +9,14 @@
 
 namespace rolling_ellipse {
 
-// Two neighbouring doubles; a predicate is false at `low` and true at `high`.
+// An interval at whose ends a predicate is false (`low`) and true (`high`).
 struct Bracket {
     double low;
     double high;
 };
 
-// Bisects the interval from low to high, where the predicate is false at `low` and true at `high`.
+// Bisects the interval from `low`, where the predicate is false, to `high`, where it is true, until
+// the ends are neighbouring doubles.
 template <class Predicate>
 Bracket bisect(double low, double high, const Predicate& is_high) {
     for (;;) {
@@ -76,7 +77,7 @@ class RootBracket {
 };
 
 // A guess of a root and of the slope there. bisect_root evaluates the function at the guess, then
-// after twice the Newton step from it, which is usually on the other side of the root.
+// at twice the Newton step from the guess, usually on the other side of the root.
 struct RootGuess {
     double root;
     double slope;

@@ -168,7 +168,6 @@ template <class T>
     return n < x ? n + 1 : n;
 }
 
-// Whether a whole number is odd.
 template <class T>
 [[gnu::always_inline]] inline Mask<T> is_odd(T n) {
     return nearest(0.5 * n) != 0.5 * n;

@@ -23,7 +23,7 @@ inline constexpr double equal_ulps = 8;
 // of them do not overflow.
 inline constexpr double largest_number = 1e50;
 
-// 1.5 * 2^52; adding this constant rounds a number to a whole number.
+// 1.5 * 2^52; adding and then subtracting this constant rounds a number to a whole number.
 inline constexpr double to_integer = 6755399441055744.0;
 
 // Result of a comparison: a bool for doubles, or one truth value for each lane.
@@ -32,8 +32,8 @@ using Mask = decltype(T{} < T{});
 
 constexpr double square(double x) { return x * x; }
 
-// sqrt(x^2 + y^2) to within 1.5 ulp, for numbers whose squares do not overflow. The hypot of C
-// libraries is within 1 ulp, but its bits differ between versions.
+// sqrt(x^2 + y^2) to within 1.5 ulp, for numbers whose squares neither overflow nor underflow.
+// The hypot of C libraries is within 1 ulp, but its bits differ between versions.
 inline double root_of_squares(double x, double y) { return std::sqrt(x * x + y * y); }
 
 // The sum high + low with |low| <= ulp(high)/2, for periods, phases and multiples of pi; T is a
@@ -107,7 +107,7 @@ inline constexpr DoubleDouble half_pi_exact = {half_pi, 6.12323399573676603587e-
 // Largest angle [rad] that nearest_quarter accepts.
 inline constexpr double largest_in_quarters = 1e5;
 
-// An angle minus the nearest multiple of pi/2, to the last bit, and whether the multiple is odd. W.
+// An angle minus the nearest multiple of pi/2, to within 1 ulp, and whether the multiple is odd. W.
 // J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980, chapter 8.
 struct QuarterAngle {
     double rest;
@@ -158,7 +158,7 @@ struct LongSineCosine {
     DoubleDouble cosine;
 };
 
-// Sine and cosine for |angle| <= pi/4 to 1e-18; the first terms are computed to 106 bits.
+// Sine and cosine for |angle| <= pi/4 to within 3e-18; the first terms are computed to 106 bits.
 inline LongSineCosine sine_cosine_of_rest(const DoubleDouble& angle) {
     const DoubleDouble squared = angle * angle;
     const double z = squared.high;

@@ -13,7 +13,7 @@
 namespace rolling_ellipse {
 namespace {
 
-using PartMatrix = std::array<PartArray, part_order>;  // row j multiplies the value at node j
+using PartMatrix = std::array<PartArray, part_order>;  // row j multiplies element j of an array
 
 struct PartRule {
     PartArray places;

@@ -45,7 +45,7 @@ enum class Sign { positive, negative, undecided };
 //   * In a series of degree 24 (slides), the factors reach^k add 25 to those of its coefficients.
 //   * The Bernstein form adds 3N + 1: 2N in an entry of the matrix, a product and N sums. That is
 //     31 for degree 10, 73 for degree 24.
-//   * Subdivision at a point other than the middle adds 3N: 30 for degree 10, the only such case.
+//   * Subdivision at a point other than the middle adds 3N: 30 for degree 10, the largest used.
 // In total, the law has 98, and the series has 98 plus those of its coefficients. Each subdivision
 // in the middle, of which there are up to 48, adds N sums; `divided` adds their roundings to the
 // magnitude. The parameters are rounded, too: the sign is proved for a body and a start that differ
@@ -117,7 +117,6 @@ struct Bernstein {
     std::array<Tracked, Degree + 1> coefficients{};
 };
 
-// The binomial coefficients of a degree.
 template <int Degree>
 constexpr auto binomials() {
     std::array<double, Degree + 1> row{1.0};

@@ -42,7 +42,8 @@ struct PartPolynomial {
     std::array<double, part_order + 1> integral;
 };
 
-// The integral of f from v0 to v1, summed in double-double, which adds no rounding error.
+// The integral of f from v0 to v1. The values at each pair of nodes are added as doubles; the terms
+// of the pairs are summed in double-double.
 template <class Function>
 DoubleDouble integrate(const GaussRule& rule, double v0, double v1, const Function& f) {
     const double middle = 0.5 * (v0 + v1);

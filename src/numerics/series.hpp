@@ -126,8 +126,8 @@ template <class Function>
 // largest of its first three terms; the omitted terms are smaller still. Half an ulp would be too
 // much, since the error may have the same sign step after step. The last four terms are used, since
 // three of them may vanish by symmetry; the earlier ones are reduced as if successive terms fell by
-// a factor of five. Each step of the fixed-point iteration divides the error of log(radius) by
-// eight.
+// a factor of five. Each step of the fixed-point iteration divides the error of log(radius) by at
+// least 24/5.
 inline double reach(std::initializer_list<const LongSeries*> all) {
     constexpr double rest = 1e-17;
     constexpr double fall = 0.2;

@@ -59,7 +59,7 @@ struct Part {
 // Returns false if some polynomial does not fit the quantity.
 bool add_turns_in(const Measure& measure, double size, std::vector<Part> parts,
                   std::vector<double>& times) {
-    constexpr double roundings = 1000;  // allowed rounding errors; the inverse basis has norm 300
+    constexpr double roundings = 1000;  // allowed rounding errors; the inverse basis has norm 230
     constexpr int deepest = 16;
     std::size_t halvings = 64 * parts.size();  // a limit, since halving does not reduce noise
     bool all_met = true;

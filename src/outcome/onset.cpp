@@ -68,7 +68,7 @@ Position position(const Shape& shape, double log_tan) {
     return position(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
 }
 
-// The minimum of a function within one step of a point.
+// The point within one step of `place` at which a function is least.
 template <class Function>
 double refined(double place, double step, const Function& f) {
     return golden_section(place - step, place + step,
@@ -111,8 +111,8 @@ struct Rolling {
         return law(force_polynomials(range(energy))) == Sign::positive;
     }
 
-    // The position, as ln tan phi, that needs the most friction; empty unless this is provably too
-    // much.
+    // The position, as ln tan phi, that needs the most friction; empty unless the law is provably
+    // broken.
     std::optional<double> broken_place(double energy) const {
         const EnergyRange heights = range(energy);
         const ForcePolynomials forces = force_polynomials(heights);
@@ -147,7 +147,7 @@ Onset upper_onset(const Rolling& body) {
 }
 
 // The window of a body that slips when released from rest at positions with h |h'| > mu (k^2 +
-// h^2), which lie between the roots of a quadratic equation in y = h^2 - B, physics (48). The
+// h^2), which lie between the roots of a quadratic equation in y = h^2 - S^2, physics (48). The
 // window ends at the largest lower energy of these positions.
 std::optional<SlipWindow> window_of_rest(const Rolling& body) {
     const Shape& shape = body.shape;

@@ -1,10 +1,11 @@
 // The energies at which rolling on level ground breaks the law of contact somewhere.
 //
 // Energies are given as heights H - S above the flat position, lengths in units of the long
-// semi-axis L, omega^2 in units of g/L. At a position of height h the law is linear in omega^2, and
-// hence in H = h + D omega^2/2, for either sign of friction, physics (47): N > 0 holds below one
-// energy, |F| < mu N between a lower and an upper energy. Therefore contact is lost above some
-// energy, and friction is too small
+// semi-axis L, omega^2 in units of g/L; S is the short semi-axis, D the inertia per mass about the
+// contact. At a position of height h the law is linear in omega^2, and hence in
+// H = h + D omega^2/2, for either sign of friction, physics (47): N > 0 holds below one energy,
+// |F| < mu N between a lower and an upper energy. Therefore contact is lost above some energy, and
+// friction is too small
 //   * at all energies above the least of the upper energies of all positions;
 //   * from the energy of the lowest position at which a body at rest slips, mu (k^2 + h^2) <
 //     h |h'|, up to the largest of the lower energies. Such positions form one interval, physics
@@ -30,7 +31,7 @@ struct Onset {
     }
 };
 
-// The energy above which N of rolling vanishes somewhere, physics (46).
+// The least energy at which N vanishes somewhere during rolling, physics (46).
 Onset contact_loss(const Shape& shape);
 
 // A range of energies in which rolling needs more friction than available.

@@ -18,7 +18,7 @@ constexpr const char* instead = "the events of simulate show how the body moves 
 // in rolling, too, physics (50), B = Gnn - mu s Gtn is positive: if s Gtn <= 0, it is a sum of
 // positive terms; otherwise B > 0 follows from c <= N B with c > 0, which N > 0 implies (N D = c
 // (k^2 + h^2) - omega^2 h h'^2 per mass). Where N <= 0 and c > 0, a body without slip has a side on
-// which B > 0. Nor does a body that rolls on level ground leave the ground before it slips: where N
+// which B > 0. On level ground, a rolling body cannot leave the ground before it slips: where N
 // vanishes, c is positive, and the body starts to slide even with infinite friction.
 
 // The outcome for a body that rolls up to the top: it passes the tip or turns back; `edge` if

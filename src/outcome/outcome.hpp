@@ -90,9 +90,9 @@ struct LiftOff {
     std::vector<SpeedRange> jam_speeds;
 };
 
-// Lift-off of a body between its first slip and the tip; it does not slip below `slip_speed`. Above
-// the Painleve friction, the body may jam instead of leaving the ground in some ranges of speed. A
-// scan finds these ranges, and bisection refines them to the last bit.
+// Lift-off of a body between its first slip and the tip. At speeds below `slip_speed` the body does
+// not slip. Above the Painleve friction, it may jam instead of leaving the ground in some ranges of
+// speed. A scan finds these ranges, and bisection refines them to the last bit.
 LiftOff lift_off(const Body& body, double friction, double slip_speed, double painleve_friction,
                  const Checkpoint& checkpoint);
 

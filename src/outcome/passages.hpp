@@ -23,7 +23,7 @@ inline constexpr std::array names<Quantity>{"theta", "x", "z", "omega", "contact
 struct Observable {
     std::optional<Quantity> quantity;  // absent for the caller's function
     Measure measure;
-    double length;  // a length [m] that adds to the rounding error of a path, a sum of lengths
+    double length;  // scale of the rounding error of a path [m]; 0 for all other quantities
 };
 
 // Observes a quantity of a motion. Motion and checkpoint must outlive the observable.
@@ -45,7 +45,8 @@ struct Stretch {
 std::vector<Stretch> stretches(const Motion& motion, double last, const Observable& of,
                                const Checkpoint& checkpoint);
 
-// Throws std::invalid_argument for a long motion: "<observable> must <requirement>, got <got>".
+// Throws std::invalid_argument: "<observable> must <requirement>, got <got>: simulate a shorter
+// motion".
 [[noreturn]] void refuse_length(const Observable& of, const std::string& requirement,
                                 const std::string& got);
 

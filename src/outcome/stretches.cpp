@@ -36,14 +36,14 @@ void measure(const Motion& motion, const Sampler& sample, Quantity quantity, con
     }
 }
 
-// What the search for turning points needs to know about a segment. Times are measured from the
-// start of the segment, in units of the motion.
+// Properties of a segment for the search for turning points. Times are measured from the start of
+// the segment, in units of the motion.
 struct Course {
     const char* where;
     std::vector<DoubleDouble> knots = {};  // the motion is smooth between them
     bool monotone = false;                 // the observable is provably monotone between knots
     std::optional<DoubleDouble> period = {};
-    double swung = 0.0;  // quarter turns that a rocking body makes in a period
+    double swung = 0.0;  // most quarter turns that a rocking body can make in a period
 };
 
 // Determines the course of a segment for one observable.
@@ -65,7 +65,7 @@ struct CourseOf {
     }
 
     Course operator()(const SlopeFlow& flow) const {
-        const double unit = flow.body.time;  // unit of time; a power of two: products are exact
+        const double unit = flow.body.time;  // a power of two, so that products with it are exact
         Course course{flow.rests ? resting : rolling};
         if (const auto half = half_period(flow)) {
             course.period = *half * 2.0 * unit;
@@ -156,7 +156,7 @@ struct Survey {
 
     // Adds the turning points between the times, where the motion is smooth. Each interval is
     // divided into `least` parts and four more for every quarter turn. For a caller's function,
-    // which may change even while the body rests, `least` is raised to 16/n, rounded up, for n
+    // which may change even at rest, `least` is at least 16/n, rounded up, where n is the number of
     // times. Returns whether the observable is proved to be monotone between the times.
     bool divide(std::vector<double>& times, double least) {
         constexpr double parts_a_quarter = 4;

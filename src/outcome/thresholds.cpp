@@ -11,8 +11,9 @@
 namespace rolling_ellipse {
 namespace {
 
-// The least friction with which sliding may jam: mu = (K + Y/u)/sqrt(Y),
-// Y = (1 - u)(u - B) = (h h')^2, is stationary where -K Y' u^2 + Y Y' u - 2 Y^2 = 0, physics (49).
+// The least friction with which sliding may jam. With K = k^2, B = S^2, u = h^2 and
+// Y = (1 - u)(u - B) = (h h')^2, mu = (K + Y/u)/sqrt(Y) is stationary where
+// -K Y' u^2 + Y Y' u - 2 Y^2 = 0, physics (49).
 Onset painleve(const Shape& shape) {
     const double b2 = square(shape.short_axis);
     const double k2 = shape.gyration2;
@@ -33,15 +34,15 @@ Onset painleve(const Shape& shape) {
 
 // Whether a slide under infinite friction reaches the tip. In such a slide N = 0: the centre is in
 // free fall, and h'^2 omega^2 + 2 g h is constant, physics (52). If this constant is below 2 g L,
-// the body turns back before the tip with c > 0: since h'' falls on the way to the tip, c h'^2 = g
-// h'^2 + h'' h'^2 omega^2 falls, too, but no further than g h'^2, its value where omega vanishes.
+// the body turns back before the tip with c = g + h'' omega^2 > 0: since h'' falls on the way to
+// the tip, c h'^2 falls, too, but no further than g h'^2, its value where omega vanishes.
 bool reaches_the_tip(const Scene& scene, const State& start) {
     const double h = geometry(scene.axes(), start.theta).h;
     const double to_tip = under_tip(flat_view(scene.axes(), start.theta), h);
     return square(start.z_dot) >= 2 * scene.gravity * to_tip;
 }
 
-// D in the flat position.
+// The moment of inertia per mass about the contact in the flat position.
 double flat_inertia(const Body& body, const FlatView& at) {
     return body.gyration2 + square(at.short_axis);
 }
@@ -120,8 +121,8 @@ struct Climb {
     }
 };
 
-// A speed below which the body cannot leave the ground: at lift-off omega^2 >= g/|h''| >= g L/(a^2
-// - b^2), physics (53), and the body has no more energy than at the start.
+// A speed below which the body cannot leave the ground: at lift-off omega^2 >= g/|h''|
+// >= g L/|a^2 - b^2|, physics (53), and the body has no more energy than at the start.
 double too_slow(const Body& body, const FlatView& at) {
     return std::sqrt(body.gravity * at.long_axis / at.c2 * body.gyration2 / flat_inertia(body, at));
 }

@@ -25,7 +25,7 @@ struct Quarter {
     const EnergyRange& range;
     double friction;
     bool from_tip;
-    double direction;    // sign of omega at the start
+    double direction;    // sign of omega after the start
     bool rises;          // whether the body moves towards the tip; true in the flat position
     ContactForce force;  // contact force at the start
     double start;        // position at the start
@@ -74,7 +74,7 @@ std::optional<double> holds_from(const Quarter& quarter) {
 
 // Appends the zeros of the law between `from` and `to` near `zero`, a zero of the squared form of
 // the law. Near the tip N and F may be small, and squaring halves the number of accurate digits. If
-// F vanishes at `zero`, too, the law may hold there and fail on both sides.
+// F vanishes at `zero`, the law may hold there and fail on both sides.
 void add_refined(std::vector<double>& places, const Quarter& quarter, double zero, double from,
                  double to) {
     const auto holds = [&](double place) { return quarter.holds(place); };

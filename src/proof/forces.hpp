@@ -1,12 +1,12 @@
 // The heights h of a rolling motion, and its contact forces as rational functions of h.
 //
-// Lengths are in units of the long semi-axis, forces in units of m g. With B = S^2, c2 = 1 - B, K =
-// k^2, u = h^2, y = u - B, s = K + 1 + B and the energy above the height e = H - h, H = E/(m g):
+// Lengths are in units of the long semi-axis, forces in units of m g. With the short semi-axis S,
+// B = S^2, c2 = 1 - B, K = k^2, u = h^2, y = u - B, s = K + 1 + B, H = E/(m g) and e = H - h:
 //     V = s u - B = B (K + B) + s y,           D = V/u,   omega^2 = 2 e/D    physics (32)
 //     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2     physics (33)
 //     Q = -h V + 2 e (B (K - c2) + s y),                     F = h' u Q/V^2  physics (34)
 //     G = (h h')^2 = (1 - u) y                                               physics (35)
-// from N and F of rolling, physics (23, 24). Cancellation is avoided: c2 is accurate even for a
+// These formulas follow from physics (23, 24). Cancellation is avoided: c2 is accurate even for a
 // nearly circular body, and e even for a thin body near a turning point.
 #pragma once
 

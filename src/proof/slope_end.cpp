@@ -1,10 +1,11 @@
 // The end of rolling on a slope: the law of the contact along the motion.
 //
-// N and F come from the same power series as the motion, N = g_into + h'' and F = x'' - g_along, so
-// that the law first breaks at the first root of a polynomial. In a half turn of a run or climb,
-// polynomials on its parts may give a faster proof that the law holds. Half turns need not be
-// followed one by one: at each angle N and F are linear in W = D omega^2/2, physics (58), and the
-// law holds on an interval of W. If it holds in two half turns, it holds in all between them.
+// Per mass, N = g_into + z_ddot and F = x_ddot - g_along come from the same power series as the
+// motion, so that the law first breaks at the first root of a polynomial. In a half turn of a run
+// or climb, polynomials on its parts may give a faster proof that the law holds. Half turns need
+// not be followed one by one: at each angle N and F are linear in W = D omega^2/2, physics (58),
+// and the law holds on an interval of W. If it holds in two half turns, it holds in all between
+// them.
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -172,8 +172,9 @@ void add(double change, double& number, double& low) {
 // about the contact. If the contact sticks, omega follows from x_dot = h omega and z_dot = h' omega
 // + rebound, physics (40), or, if omega changes little, from v and u before the collision. If the
 // contact keeps slipping, the impulse gives x_dot and omega. If most of omega would cancel, it can
-// be more accurate to compute omega from the angular momentum about the point of the impulse's line
-// at the height of the centre. If h' omega + rebound would cancel, the impulse gives z_dot.
+// be more accurate to compute omega from the angular momentum about the point at the height of the
+// centre on the line of action of the impulse. If h' omega + rebound would cancel, the impulse
+// gives z_dot.
 void apply(const Scene& scene, const Geometry& at, const Contact& c, const Reaction& reaction,
            State& state, LowParts& low) {
     const double k2 = scene.inertia / scene.mass;

@@ -36,8 +36,8 @@ inline constexpr Field<InitialState> start_fields[] = {
 
 InitialState initial_state(const Scene& scene);
 
-// The kinetic energy after the impulse if there were no ground, which can only lower it, in units
-// of m g times the long semi-axis.
+// The kinetic energy after the impulse without a reaction of the ground, which can only lower this
+// energy, in units of m g times the long semi-axis.
 double energy_after_impulse(const Scene& scene, const Geometry& at);
 
 // The smallest coefficient of friction with which the contact does not slip after the applied

@@ -17,7 +17,7 @@
 
 namespace rolling_ellipse {
 
-// A body on level ground: semi-axes [m], k^2 = I/m [m^2], gravity [m/s^2].
+// A rolling body: semi-axes [m], k^2 = I/m [m^2], gravity [m/s^2].
 struct Body {
     double a;
     double b;
@@ -117,7 +117,7 @@ inline constexpr SceneField scene_fields[] = {
 using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
 Scene scene_of(const SceneNumbers& numbers = {}, const std::optional<Impulse>& impulse = {});
 
-// A body of unit mass on level ground; the other required values are NaN.
+// A body of unit mass on level ground; restitution, theta, omega and x are NaN.
 Scene level_scene(const Body& body, double friction);
 
 enum class Mode : std::int8_t { rolling, sliding, flight, rest };
@@ -125,7 +125,6 @@ enum class Mode : std::int8_t { rolling, sliding, flight, rest };
 template <>
 inline constexpr std::array names<Mode>{"ROLLING", "SLIDING", "FLIGHT", "REST"};
 
-// The state of a body on or over the ground.
 struct State {
     double theta;
     double omega;
@@ -151,7 +150,6 @@ inline bool rolls(const State& state) {
     return state.mode == Mode::rolling || state.mode == Mode::rest;
 }
 
-// The force of the ground on a body.
 struct ContactForce {
     double normal;    // normal force [N]
     double friction;  // friction force on the body, along x [N]
@@ -201,13 +199,12 @@ inline double slip_velocity(const State& state, const Geometry& at) {
     return state.x_dot - at.h * state.omega;
 }
 
-// The state of a body that slides on the ground with the velocity x_dot.
+// The state of a body that moves on the ground with the velocity x_dot.
 inline State on_ground(const Geometry& at, double theta, double omega, double x, double x_dot,
                        Mode mode) {
     return {theta, omega, x, at.h, x_dot, at.dh * omega, mode};
 }
 
-// The state of a body on the ground without slip.
 inline State without_slip(const Geometry& at, double theta, double omega, double x, Mode mode) {
     return on_ground(at, theta, omega, x, at.h * omega, mode);
 }

@@ -1,5 +1,5 @@
-// Steps and samples allocate no memory, apart from the growth of the vectors that store the steps.
-// The test counts allocations for some number of them and for twice as many.
+// Single steps and samples allocate no memory, apart from the growth of the vectors that store the
+// steps. The test counts allocations for a number of steps or samples and for twice as many.
 //
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 
@@ -159,7 +159,6 @@ void bodies_allocate_nothing() {
     }
 }
 
-// The counter registers the allocation of one vector.
 void it_counts() {
     const long once = allocations([] { std::vector<double> one(3); });
     check(once == 1, "a vector", once, 1);

@@ -127,7 +127,7 @@ void needed_friction_of_special_forces() {
     CHECK(friction_needed({-1.0, 0.0}) == infinity);
 }
 
-// Compares points, series and times of one motion from the kernel of each level.
+// Compares points, series and samples of motions between the kernels of all levels.
 void every_vector_level_has_the_same_bits() {
     const Body body{2.0, 1.0, 1.25, 9.81};
     for (const double omega : {1.0, 3.2}) {  // libration and rotation

@@ -291,7 +291,7 @@ void print_certificate(const Asked& asked) {
 
 // ---------------------------------------------------------------------------- many bodies
 
-// Prints bodies of all aspect ratios in all kinds of motion, at positive and negative times.
+// Prints bodies of many aspect ratios, in libration and rotation, at positive and negative times.
 void print_bodies() {
     constexpr int count = 96;
     Draw draw;

@@ -54,14 +54,14 @@ def states(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
 
 
 def exact_matrix(q: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[list[mp.mpf]]:
-    """Factors of q_dot in f1 and in the rates of f2, f3, f4."""
+    """Coefficients of q_dot in f1 and in the rates of f2, f3, f4."""
     units = [[mp.mpf(j == k) for k in range(5)] for j in range(5)]
     columns = [[no_slip(q, unit), *along(positions, q, unit, a, b)] for unit in units]
     return [[columns[j][k] for j in range(5)] for k in range(4)]
 
 
 def exact_drift(q: list[mp.mpf], q_dot: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """Rate of f1 and second rates of f2, f3, f4 when q moves with a constant q_dot."""
+    """Rate of f1 and second time derivatives of f2, f3, f4 at constant q_dot."""
 
     def later(t: mp.mpf) -> list[mp.mpf]:
         return [value + t * rate for value, rate in zip(q, q_dot, strict=True)]
@@ -116,10 +116,10 @@ def test_matrix_and_drift_agree_with_differentiation(shape: Shape) -> None:
 
 
 def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> float:
-    """Largest residual of M q_ddot = Q + A^T lambda and of A q_ddot + A_dot q_dot = 0 (or of
-    Baumgarte's feedback), relative to the sums of the magnitudes of their terms. In the second
-    equation, the term of A is the sum of a row times the largest acceleration, since elimination
-    guarantees no more. Angular accelerations are multiplied by the size of the body."""
+    """Largest residual of M q_ddot = Q + A^T lambda and of A q_ddot + A_dot q_dot = 0 (or of the
+    latter with Baumgarte's feedback), relative to the sums of the magnitudes of their terms. The
+    terms of A q_ddot are bounded by the sum of |A| over a row times the largest acceleration, since
+    elimination guarantees no more. Angular accelerations are multiplied by the size of the body."""
     point, rate = q.astype(np.longdouble), q_dot.astype(np.longdouble)
     (mass, force), (q_ddot, multipliers) = forces(scene), solved
     rows, slopes = matrix(point, scene.a, scene.b), matrix_slopes(point, scene.a, scene.b)
@@ -149,9 +149,9 @@ def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> 
 @each_shape
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte"])
 def test_solutions_satisfy_the_system(shape: Shape, stabilization: str) -> None:
-    """On a slope and at states of any kind, residuals computed without the core are at most 1e-13,
-    about 500 ulps. The residual of elimination is the rounding of the nine terms of each row, times
-    the growth factor."""
+    """On a slope and at states of any kind, residuals with matrices in long double are at most
+    1e-13, about 500 ulps. The residual of elimination is the rounding of the nine terms of each
+    row, times the growth factor."""
     scene = Scene(*shape, mass=3.0, gravity=3.7, slope=-0.2)
     how = settings(stabilization=stabilization, baumgarte=(3.0, 5.0))
     q, q_dot = states(shape)
@@ -171,7 +171,7 @@ def test_back_substitution_detects_a_change_of_a_millionth(column: int) -> None:
 
 @each_shape
 def test_rolling_states_accelerate_as_in_the_rolling_model(shape: Shape) -> None:
-    """In 50 random rolling states accelerations and multipliers, among them N and F, equal those of
+    """In 50 random rolling states, accelerations and multipliers (among them N, F) equal those of
     the model "rolling" to 1e-12 of their terms. Gravity is a term: z_ddot is lambda_2/m - g."""
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
     theta, omega = generator.uniform(-10, 10, 50), generator.normal(0, 3, 50)
@@ -252,8 +252,8 @@ FORCES = ("normal_force", "friction_force")
 def test_motions_agree_with_exact_rolling(scene: Scene, stabilization: Any) -> None:
     """Motions of 2 s at rtol 1e-12 are compared with the model "rolling", which is exact on level
     ground and solved with dop853 at 1e-13 on slopes. The bound is 1e-9: each of about 100 steps is
-    off by 1e-12, and errors grow by a factor of at most about exp(lambda t) = e^3.4, as does the
-    rounding of a large theta, 1.5e-11. With feedback, forces contain the velocity residual times
+    off by 1e-12, and these errors, like the rounding of a large theta, 1.5e-11, grow by a factor of
+    at most about exp(1.7 t) = e^3.4. With feedback, forces contain the velocity residual times
     2 alpha m <= 60 kg/s."""
     times = np.linspace(0, 2, 41)
     tight: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
@@ -270,9 +270,9 @@ def test_motions_agree_with_exact_rolling(scene: Scene, stabilization: Any) -> N
 
 
 @each_stabilization
-def test_distant_starts_are_as_accurate_as_near_ones(stabilization: Any) -> None:
-    """theta = 1e5 has an ulp of 1.5e-11. After 10 s at rtol 1e-13 the error is only that of a
-    sample. If psi were rounded like theta, f4 would be off by an ulp throughout the 10 s."""
+def test_starts_at_large_angles_are_accurate_to_a_few_ulps(stabilization: Any) -> None:
+    """theta = 1e5 has an ulp of 1.5e-11. After 10 s at rtol 1e-13 the error is at most a few such
+    ulps. If psi were rounded like theta, f4 would be off by an ulp throughout the 10 s."""
     scene = Scene(2.0, 1.0, theta=1e5, omega=3.2)
     moving = by_multipliers(scene, [10.0], stabilization=stabilization, rtol=1e-13, atol=1e-13)
     assert abs(moving.theta[0] - simulate(scene, [10.0]).theta[0]) <= 1e-10
@@ -280,18 +280,18 @@ def test_distant_starts_are_as_accurate_as_near_ones(stabilization: Any) -> None
 
 @each_stabilization
 @pytest.mark.parametrize("theta", [0.0, QUARTER])
-def test_a_resting_body_moves_only_by_the_rounding_of_its_angle(
+def test_a_resting_body_moves_only_as_the_rounding_of_its_angle_grows(
     theta: float, stabilization: Any
 ) -> None:
     """A flat body does not move. On the tip the rounding of theta grows like exp(1.674 t), by a
-    factor 4300 in 5 s: 8 ulps of the angle become 1.5e-11."""
+    factor of 4300 in 5 s: 16 ulps of the angle become 1.5e-11."""
     scene = Scene(2.0, 1.0, mass=3.0, theta=theta, x=4.0)
     resting = by_multipliers(scene, 5.0, stabilization=stabilization)
     grown = 1.5e-11 if theta else 0.0
     assert np.max(np.abs(resting.q - resting.q[0])) <= grown
     rate = 20 if stabilization == "baumgarte" else 1.674  # growth rate; 2 alpha with feedback
     assert np.max(np.abs(resting.q_dot)) <= 2 * rate * grown  # x' = h omega is the fastest
-    # forces change by about ten weights per radian of theta, with feedback by a hundred
+    # the force may change by 100 N, about three weights, per radian of theta
     assert np.max(np.abs(resting.normal_force - 3 * 9.81)) <= 100 * grown + 8 * EPS * 3 * 9.81
 
 
@@ -302,8 +302,8 @@ STEPS = {"rk4": (4, (200, 400, 800)), "dopri5": (5, (160, 320, 640)), "dop853": 
 @pytest.mark.parametrize("method", STEPS)
 def test_errors_shrink_at_the_order_of_the_method(method: Any, stabilization: Any) -> None:
     """A power of the step is fitted to the largest error of q at all knots of 3.37 half turns. The
-    terms of the next order still contribute, so that the slope lies between the order of the method
-    and the next one, closer to the former."""
+    terms of the next order still contribute, so the slope may exceed the order of the method by up
+    to 0.75."""
     order, counts = STEPS[method]
     scene = Scene(1.2, 1.0, theta=0.2, omega=4.0)
     span = 3.37 * rl.period(scene) / 2
@@ -318,7 +318,7 @@ def test_errors_shrink_at_the_order_of_the_method(method: Any, stabilization: An
 
 
 @pytest.mark.parametrize("stabilization", [*EXPLICIT, "ggl"])
-def test_arrays_of_coordinates_equal_the_individual_fields(stabilization: Any) -> None:
+def test_arrays_fields_accelerations_and_energy_are_consistent(stabilization: Any) -> None:
     method: dict[str, Any] = {"method": "radau", "step": 0.02} if stabilization == "ggl" else {}
     times = np.linspace(0, 4, 101)
     motion = by_multipliers(GENERIC, times, stabilization=stabilization, **method)

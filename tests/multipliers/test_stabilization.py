@@ -42,9 +42,9 @@ def test_residuals_and_errors_rank_the_stabilizations() -> None:
     assert np.all(gaps["projection"] <= grain) and np.all(gaps["projection+energy"] <= grain)
 
 
-def test_the_path_reveals_an_error_that_no_residual_shows() -> None:
-    """In rolling x is a function of theta, but the constraint contains only velocities. Truncation
-    errors of the steps move x off the path in proportion to time, with any projection."""
+def test_projected_motions_leave_the_path_in_proportion_to_time() -> None:
+    """In rolling x is a function of theta, but the no-slip constraint contains only velocities.
+    Truncation errors of the steps therefore move x off the path, which no residual shows."""
     for name in ("projection", "projection+energy"):
         moving = kept(name)
         path = centre_path(moving.theta, a=1.5, b=1.0) - centre_path(0.2, a=1.5, b=1.0)
@@ -58,9 +58,9 @@ def test_the_path_reveals_an_error_that_no_residual_shows() -> None:
 @pytest.mark.parametrize("scene", [ROTATION, ROCKING], ids=["rotation", "rocking"])
 def test_residuals_of_projection_stay_small_between_steps(scene: Scene, stabilization: Any) -> None:
     """A motion of 10 half turns, with dop853 at rtol 1e-10, is sampled at 10 000 times between the
-    knots. It is within 1e-8 of exact rolling: theta grows to 30 in about 500 steps, whose relative
-    errors of 1e-10 have both signs. Residuals are at most 16 ulps of theta, and residuals of
-    velocities psi_dot times as large."""
+    knots. It is within 1e-8 of exact rolling: in a rotation theta grows to 30 in about 500 steps,
+    whose relative errors of 1e-10 have both signs. Residuals are at most 16 ulps of the largest
+    theta, and residuals of velocities max |psi_dot| times as large."""
     times = np.sort(np.random.default_rng(1).uniform(0, 10 * half_turn(scene), 10_000))
     exact, moving = simulate(scene, times), multipliers(scene, times, stabilization=stabilization)
     for name in ("theta", "omega", "x", "psi"):
@@ -75,8 +75,8 @@ def test_residuals_of_projection_stay_small_between_steps(scene: Scene, stabiliz
 
 @pytest.mark.parametrize("name", ["long", *(name for name in SCENES if "far" not in name)])
 def test_energy_is_conserved_at_all_times(name: str) -> None:
-    """The energy of every scene, and of 1000 half turns, is constant to 8 ulps of its terms, at the
-    knots and between them."""
+    """At random times the energy of each scene, and of a motion of 1000 half turns, is constant to
+    8 ulps of the sum of its terms."""
     scene, long = SCENES.get(name, FED_BACK), kept("projection+energy")
     times = np.append(0.0, np.sort(np.random.default_rng(2).uniform(0, 3, 2000)))
     if name == "long":
@@ -107,11 +107,12 @@ def test_radau_has_order_5_for_the_index_2_system() -> None:
     assert np.max(np.abs(slopes - 5)) <= 0.15
 
 
-# the thin scene is left out: it passes its flat side, some (b/a)^2 wide, in less than a step
+# the thin scene is left out: it passes its flat side, (b/a)^2 rad wide, in less than a step
 @pytest.mark.parametrize("name", [n for n in SCENES if "far" not in n and n != "thin"])
 def test_index_2_residuals_are_of_rounding_size_everywhere(name: str) -> None:
-    """At and between the knots, residuals stay below 64 ulps of the size of the body, times a/b for
-    the effect of an ulp of psi on f3, and times a/b again for its effect on the rates."""
+    """At and between the knots, residuals stay below 64 ulps of the size of the body, times the
+    aspect ratio for the effect of an ulp of psi on f3. The bound for velocities has this factor
+    twice, and 1 + max |psi_dot|."""
     scene = SCENES[name]
     times = np.sort(np.append(np.arange(65) / 64, (np.arange(64) + 0.37) / 64))
     moving, exact = ggl(scene, times, step=2.0**-6), simulate(scene, times, model="rolling")
@@ -129,7 +130,7 @@ UNSOLVABLE = {"uphill": 2.0**-5, "standing": 2.0**-4, "thin": 2.0**-6}
 
 
 @pytest.mark.parametrize(("name", "step"), UNSOLVABLE.items(), ids=UNSOLVABLE)
-def test_a_step_that_cannot_be_solved_is_not_taken(name: str, step: float) -> None:
+def test_constraints_hold_up_to_a_step_that_cannot_be_solved(name: str, step: float) -> None:
     """If Newton's iteration fails, the motion ends at the previous knot, where it obeys the
     constraints, as it does after every step of the index-2 system."""
     times = np.arange(round(1 / step) + 1) * step

@@ -1,4 +1,4 @@
-"""Random scenes on any ground, and the laws of their contact."""
+"""Random scenes on level ground and slopes, and the laws of their contact."""
 
 import math
 from collections.abc import Iterator
@@ -77,8 +77,8 @@ def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[fl
 
 def way_of_slide(scene: Scene, start: InitialState, friction: float, theta: Any, lasts: Any) -> Any:
     """Change of x in a slide that takes the time `lasts` and ends at the angle theta. F is N times
-    `friction`, which has a sign. The integral of N/m follows from z'' = N/m - g cos(slope) and
-    z = h."""
+    `friction`, which has a sign. The double integral of N/m follows from z'' = N/m - g cos(slope)
+    and z = h."""
     h0, dh0, _ = (float(each) for each in support(start.theta, scene.a, scene.b))
     into, along = (scene.gravity * f(scene.slope) for f in (math.cos, math.sin))
     h = support(theta, scene.a, scene.b).h
@@ -98,8 +98,8 @@ def energy(scene: Scene, state: InitialState) -> float:
 
 
 def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size: float) -> Impulse:
-    """A blow of a given size at a random point of the body, mostly downwards, and vertical half of
-    the time."""
+    """A blow at a random point of the body. Its component normal to the ground has a given size and
+    mostly points downwards; half of the blows have no other component."""
     push = rng.choice([0.0, rng.normal()])
     share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
     along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
@@ -113,8 +113,8 @@ def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size
 
 def random_scenes(count: int, seed: int, struck: float = 0.0, **given: Any) -> Iterator[Scene]:
     """Scenes in the air, sliding or rolling, lying or standing. A tenth are circles, and some are
-    flat, on the tip or at rest. The share `struck` of the scenes has a blow, which is about strong
-    enough to roll the body over."""
+    flat, on the tip or at rest. The share `struck` of the scenes has a blow, which may or may
+    not be strong enough to roll the body over."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()

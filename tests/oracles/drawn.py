@@ -45,7 +45,7 @@ def bodies(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
     near = st.builds(lambda e, s: 1 + s * 10.0**e, st.floats(-15, -1), SIGNS)
     thin = st.floats(-thinnest, thinnest).map(lambda exponent: 10.0**exponent)
     ratio = draw(st.one_of(st.just(1.0), near, st.floats(0.3, 3.0), thin))
-    limit = 1e3 * (1 - 1e-9)  # products of this limit are still accepted after rounding
+    limit = 1e3 * (1 - 1e-9)  # ratios up to this are accepted even after a and b are rounded
     ratio = min(max(ratio, 1 / limit), limit)
     a, b = (size, size / ratio) if ratio > 1 else (size * ratio, size)
     spread2 = max(a, b) ** 2
@@ -77,8 +77,8 @@ def spans(draw: Draw, motion: dict[str, float], most: float) -> float:
 
 
 def at_its_limit(values: dict[str, Any]) -> dict[str, Any]:
-    """The argument omega that makes the body weightless, h'' omega^2 = -g cos(alpha), if such a
-    speed exists, otherwise the friction that rolling needs, exact to within rounding."""
+    """The omega that makes the body weightless, h'' omega^2 = -g cos(slope), if friction is below 1
+    and such a speed exists; otherwise the friction that rolling needs, to within rounding."""
     a, b, theta, slope = (values[name] for name in ("a", "b", "theta", "slope"))
     h, tilt = geometry.support(theta, a=a, b=b), geometry.support_slope(theta, a=a, b=b)
     radius = (a * b) ** 2 / h**3

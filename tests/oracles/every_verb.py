@@ -1,4 +1,4 @@
-"""A typed script that uses every verb; the suite runs it and checks its types."""
+"""A typed script that calls each function of `_verbs`; the suite runs it and checks its types."""
 
 from pathlib import Path
 

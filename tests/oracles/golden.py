@@ -174,7 +174,6 @@ def bodies_through_python(records: list[Record]) -> list[Record]:
 
 
 def outcomes_through_python(records: list[Record]) -> Iterator[Record]:
-    """Records of thresholds and of classify."""
     theta, omega = np.array([0.2 * i for i in range(16)]), np.array([0.5 * i for i in range(16)])
     for one, other in pairwise(each for each in records if each.kind in ("thresholds", "classify")):
         if one.kind == "classify":

@@ -24,7 +24,7 @@ def ctrl_c_after(seconds: float) -> Iterator[None]:
 
 @contextmanager
 def files_of_at_most(size: int) -> Iterator[None]:
-    """Limit the size of files [bytes], which raises an OSError as a full disk does."""
+    """Limit the size of files [bytes]. Larger writes raise an OSError, as on a full disk."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     usual = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     try:

@@ -28,8 +28,8 @@ SETTINGS: tuple[dict[str, Any], ...] = (
 
 
 def random_motion(rng: np.random.Generator) -> Trajectory:
-    """A motion of a random model and method, on level ground or a slope. If the model allows only
-    rolling, so does the start."""
+    """A motion of a random model and method, on level ground or a slope. Unless the
+    model is "contact", the body starts on the ground without slip."""
     settings = SETTINGS[rng.integers(len(SETTINGS))]
     level = settings.get("method") == "exact" or rng.random() < 0.6
     given: dict[str, Any] = {"x": rng.normal(), "slope": 0.0 if level else rng.uniform(-0.3, 0.3)}

@@ -13,7 +13,7 @@ MAKERS = ROOT / "docs" / "makers"
 
 
 def made_by(name: str) -> dict[str, Any]:
-    """Run docs/makers/NAME.py, which may import its neighbours, and return its names."""
+    """Run docs/makers/NAME.py, which may import its neighbours, and return its globals."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(MAKERS)
         return runpy.run_path(str(MAKERS / f"{name}.py"))

@@ -80,10 +80,9 @@ def luminance(colour: Any) -> float:
 
 
 def shows_something(figure: Figure) -> bool:
-    """True if each axes has a point of a curve, a body or a text inside its frame.
+    """True if each axes has a point of a curve or a corner of a patch or text inside its frame.
 
-    Lines and grounds across the whole axes, which are placed in fractions of the axes, do not
-    count.
+    Lines across the whole axes, which are placed in fractions of the axes, do not count.
     """
     figure.draw_without_rendering()
     for ax in figure.axes:

@@ -84,7 +84,7 @@ def with_unit(values: Any) -> Astropy:
 
 
 def quantities(value: Any) -> list[Any]:
-    """Numbers or arrays with units, one from each library."""
+    """Numbers or arrays with units, like those of each library."""
     found = [
         Pint(value), Pint(value, "dimensionless"), with_unit(value), np.array(value).view(Unyt),
         np.array(value).view(Brian), Labelled(Pint(value)),

@@ -1,6 +1,6 @@
 """Tests of `pytest -m quick`: files, and single tests of slow files, from every folder.
 
-They take a minute and find most mistakes, but do not replace the whole suite.
+They take a minute or two and find most mistakes, but do not replace the whole suite.
 """
 
 QUICK = (

@@ -128,8 +128,8 @@ class Chart(NamedTuple):
     """Coordinate v, 0 <= v <= top, with tan phi = waist sinh v: even steps in v resolve all scales.
 
     The narrowest feature, of thin bodies with small inertia, is (b/a)^2 wide. The chart of a
-    rotation ends at tan phi = 1e9 instead of the tip. There every force is an even function of
-    pi/2 - phi, so that it differs from the force on the tip by a relative 1e-18.
+    rotation ends at tan phi = 1e9 instead of the tip. There N, an even function of pi/2 -
+    phi, differs from N on the tip by a relative 1e-18; F, an odd function, is of the order of 1e-9.
     """
 
     waist: Long
@@ -182,8 +182,8 @@ def golden_minimum(
 
 
 def local_minima(values: Long, keep: Long) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """(row, column) of the samples that are lower than their neighbours and at most the `keep` of
-    their row."""
+    """(row, column) of the samples that are lower than their neighbours and not above the value of
+    `keep` for their row."""
     padded = np.pad(values, ((0, 0), (1, 1)), constant_values=np.inf)
     least = (values < padded[:, :-2]) & (values <= padded[:, 2:]) & (values <= keep[:, None])
     rows, columns = np.nonzero(least)

@@ -19,7 +19,6 @@ def states_of(motion: Trajectory) -> NDArray[np.float64]:
 
 
 def exact(one: benchmark.Problem, t: Any, setting: Any = None) -> benchmark.Result:
-    """States and forces of the exact motion."""
     motion = one.trajectory.sol(t)
     normal, friction = motion.normal_force, motion.friction_force
     return benchmark.Result(states_of(motion), normal_force=normal, friction_force=friction)

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 ORDER = 30
-# A quarter turn is QUARTER + REST. Angles are measured from the nearest quarter turn, since thin
-# bodies need their last digits.
+# A quarter turn is QUARTER + REST. Angles are measured from the nearest quarter turn, since the
+# motion of thin bodies depends on their last digits.
 QUARTER = np.longdouble(float.fromhex("0x1.921fb54442d18p+0"))
 REST = np.longdouble(float.fromhex("0x1.1a62633145c07p-54"))
 Columns = Any  # arrays of long doubles, with a column for each motion

@@ -31,7 +31,8 @@ def roundings(inputs: Inputs) -> dict[str, float]:
 
 
 def spread(answer: Answer, inputs: Inputs, errors: Inputs) -> Floats:
-    """Sum of the changes of an answer when each input changes by its error, in both directions."""
+    """Sum of the changes of an answer when each input changes by its error in the worse direction,
+    plus four ulps of the answer."""
     middle = answer(**inputs)
     total = ROUNDINGS * np.spacing(np.abs(middle))
     for name, error in errors.items():

@@ -13,7 +13,7 @@ from rolling_ellipse import Scene
 
 from oracles.paths import REFERENCE
 
-# The tables have 30 or 40 digits: with 60 digits a difference is exact.
+# The tables have 30 or 40 digits: with 60 digits the rounding of a difference does not matter.
 EXACT = Context(prec=60)
 
 

@@ -84,7 +84,7 @@ def test_outcomes_on_a_slope_agree_with_closed_forms(side: int) -> None:
 
 
 def test_a_start_just_off_the_equilibrium_near_the_tip_is_decided() -> None:
-    """A start 4e-15 off the equilibrium near the tip takes some 30 growth times (0.6 s) to fall."""
+    """A start 4e-15 off the equilibrium near the tip takes about 30 growth times of 0.6 s."""
     slope = 1e-3
     incline = math.tan(slope)
     tangent = (3 + math.sqrt(9 - 16 * incline**2)) / (8 * incline)

@@ -15,7 +15,7 @@ from rolling_ellipse import Outcome, Scene, certify, classify, thresholds
 
 @pytest.mark.parametrize("friction", [0.0, 1e-9, 0.5, math.inf])
 @pytest.mark.parametrize("omega", [-1e6, -1e-5, 1.0, 1e6])
-def test_a_circle_rolls_forever_with_any_friction(omega: float, friction: float) -> None:
+def test_a_circle_rolls_forever_unless_friction_is_zero(omega: float, friction: float) -> None:
     """Without friction the circle moves in the same way, but its outcome is SLIPS."""
     for theta in (0.0, 0.7, 500.0):
         found = classify(a=0.7, b=0.7, omega=omega, theta=theta, friction=friction)
@@ -26,9 +26,9 @@ def test_a_circle_rolls_forever_with_any_friction(omega: float, friction: float)
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.5, 1.0), (0.3, 0.9), (9.5, 1.0), (1.0, 9.5)])
 def test_starts_near_the_separatrix_are_edge_or_correct(a: float, b: float, gravity: float) -> None:
     """Friction is infinite, and at ratios of axes below 9.75 N stays positive even slightly above
-    the separatrix. At the double nearest to the separatrix the answer is EDGE; a few ulp away it is
-    EDGE or correct. Every start is flat: the double nearest to pi/2 is off by 6e-17, which matters
-    only through its square."""
+    the separatrix. At the double nearest to the separatrix the answer is EDGE; up to 64 ulp away it
+    is EDGE or correct. Every start is flat: the double nearest to pi/2 is off by 6e-17, which
+    matters only through its square."""
     mp.mp.dps = DIGITS
     longer, shorter = mp.mpf(max(a, b)), mp.mpf(min(a, b))
     gyration2 = mp.mpf((a * a + b * b) / 4)  # as the package rounds it
@@ -71,8 +71,8 @@ def test_the_outcome_changes_at_the_certified_friction(a: float, b: float, omega
 
 def test_a_body_that_rises_from_beyond_the_slip_angle_rolls_over() -> None:
     """The 2:1 disc that turns at 4.5 rad/s when flat needs a friction of 0.647 at 48.6 degrees, and
-    hardly any near the tip. If the same motion starts above that angle, it passes the tip when
-    rising and slips when falling."""
+    hardly any near the tip. If the same motion starts near the tip, it passes the tip when rising
+    and slips when falling."""
     friction = 0.5
     moving = oracles.rolling.motion([2.0], [1.0], [1.25], [9.81], [0.0], [4.5])
     for angle, up, down in (
@@ -91,10 +91,10 @@ def test_a_body_that_rises_from_beyond_the_slip_angle_rolls_over() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.5, 10.0, math.inf])
 def test_a_body_turning_too_fast_to_stay_on_the_ground_loses_contact(friction: float) -> None:
-    """A body on its tip, without any contact force, leaves the ground if omega^2 exceeds g L/(L^2 -
-    S^2). For axes of 1:1.5, a ratio below root three, this is also the least speed at which N of
-    rolling vanishes, so a slower body rolls over if friction is infinite. A change of 1e-11 in
-    speed changes c by 2e-11, far above rounding."""
+    """A body on its tip leaves the ground if omega^2 exceeds g L/(L^2 - S^2), where L and S are the
+    longer and the shorter semi-axis. For axes of 1:1.5, a ratio below root three, this is also the
+    least speed at which N of rolling vanishes, so a slower body rolls over if friction is infinite.
+    A change of 1e-11 in speed changes g + h'' omega^2 by 2e-11 g, far above rounding."""
     limit = math.sqrt(9.81 * 1.5 / (1.5**2 - 1))
     at: dict[str, Any] = {"a": 1.0, "b": 1.5, "friction": friction}
     below = Outcome.ROLLS_OVER if math.isinf(friction) else Outcome.SLIPS
@@ -108,8 +108,8 @@ def test_a_body_turning_too_fast_to_stay_on_the_ground_loses_contact(friction: f
 
 @pytest.mark.parametrize(("a", "b"), [(1e3, 1.0), (1.0, 1e3), (1.0, 1e-3), (1e-3, 1.0)])
 def test_the_thinnest_body_rocks_if_slow_and_slips_if_fast(a: float, b: float) -> None:
-    """c stays positive in the flat position, where h'' = L^2/S - S > 0, at any speed; at 1e4 rad/s
-    the ground would have to pull as soon as the body rises."""
+    """g + h'' omega^2 is positive in the flat position, where h'' = L^2/S - S > 0, at any speed; at
+    1e4 rad/s the ground would have to pull as soon as the body rises."""
     flat = 0.0 if a > b else math.pi / 2
     tip = math.pi / 2 - flat
     slow = 1e-3 * thresholds(a, b).contact_loss_speed

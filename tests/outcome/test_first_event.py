@@ -93,7 +93,8 @@ def walk(sample: Sample) -> Walk:
     barrier = moving.gravity * np.abs(moving.a - moving.b)
     over = (moving.lift - barrier) / (moving.lift + barrier)
     rolls = least_slack(sample)
-    rests = (sample.omega == 0) & (2 * sample.theta / PI % 1 == 0)  # starts near an axis are on it
+    # a scene at rest is either on an axis or farther from it than roundings
+    rests = (sample.omega == 0) & (2 * sample.theta / PI % 1 == 0)
     slips = (rolls < 0) | (sample.friction == 0)
     outcome = np.select(
         [rests, pressed < 0, slips, over < 0],

@@ -22,8 +22,8 @@ def recipe() -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("friction", "speed"),
     [
-        (0.05, 3.705407360274),  # still slides over the tip
-        (0.1, 3.475473717038),  # rolls before the tip
+        (0.05, 3.705407360274),  # still slides when it passes the tip
+        (0.1, 3.475473717038),  # starts to roll before the tip
         (0.2, 3.106752254887),
         (0.3, 2.955400074211),
     ],

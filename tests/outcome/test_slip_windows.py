@@ -1,7 +1,7 @@
 """`slip_windows` contain exactly the speeds at which rolling needs more than the given friction.
 
-The oracle samples |F|/N over the angle in long double. At each angle the law is linear in omega^2:
-the package finds the ends of windows by scanning the angle, and proves them with polynomials.
+The oracle samples |F|/N over the angle in long double. At each angle F and N are linear in omega^2.
+The package finds the ends of windows by scanning the angle, and proves them with polynomials.
 """
 
 import math
@@ -51,7 +51,7 @@ def friction_at_rest(a: float, b: float, gyration2: float) -> float:
 
 
 def bodies(count: int, seed: int, decades: float) -> Iterator[Body]:
-    """Random bodies; every second one has slightly too little friction to stay at rest."""
+    """Random bodies; every second one slips if it is released from rest at some angle."""
     rng = np.random.default_rng(seed)
     for i in range(count):
         size, aspect = 10 ** rng.uniform(-1, 1), 10 ** rng.uniform(-decades, decades)
@@ -72,7 +72,8 @@ def is_inside(windows: Windows, omega: Any) -> Any:
 
 
 def test_windows_agree_with_samples_of_the_needed_friction() -> None:
-    """At 150 speeds, some 1e-8 from an end, rolling lacks friction exactly inside the windows."""
+    """At 150 speeds, including those a relative 1e-8 from each end, rolling needs more than the
+    given friction exactly if the speed is inside a window."""
     two = 0
     for body in bodies(60, 11, decades=1.5):
         windows = body.windows()

@@ -1,4 +1,4 @@
-"""`thresholds` agrees with closed forms, printed numbers, and the definition of each speed."""
+"""`thresholds` agrees with closed forms and with the definition of each speed and friction."""
 
 import math
 from dataclasses import replace
@@ -32,7 +32,6 @@ def flat_of(shape: Shape) -> float:
 
 
 def rolling(shape: Shape, gyration2: float, omega: Any) -> oracles.rolling.Motion:
-    """Motions that pass the flat position at these speeds [rad/s]."""
     return oracles.rolling.passing_flat(*shape, gyration2, GRAVITY, omega)
 
 
@@ -184,9 +183,10 @@ def lift_off(shape: Shape, gyration2: float, friction: float) -> float:
 def test_the_lift_off_speed_is_exact_with_infinite_friction(shape: Shape, kind: str) -> None:
     """Rolling ends where N = 0, and N = 0 in the following slide as well: the centre moves freely
     while the body touches the ground, and just reaches the tip if z_dot^2 = h'^2 omega^2 = 2 g (L -
-    h). Two equations, solved to 40 digits, give the angle and the speed at which the slide starts.
-    The package solves the first as the root of a polynomial and the second in closed form. The
-    tolerance of 1e-11 is a hundred times 1e-13, because the terms of N cancel there."""
+    h), where L is the longer semi-axis. These two equations, solved to 40 digits, give the angle
+    and the speed at which the slide starts. The package solves the first as the root of a
+    polynomial and the second in closed form. The tolerance of 1e-11 is a hundred times 1e-13,
+    because the terms of N cancel there."""
     mp.mp.dps = DIGITS
     gyration2 = gyration2_of(shape, kind)
     long, short = mp.mpf(max(shape)), mp.mpf(min(shape))
@@ -275,9 +275,10 @@ def test_a_body_jams_only_between_its_jam_speeds(
 ) -> None:
     """The mass of these bodies is near their centre, and the friction exceeds Painleve's. The
     contact model confirms the ranges of jam speeds up to 1e-4 from their ends. Nearer to an end,
-    where c and B vanish together, the last digits of a slide decide between a jam and lift-off. The
-    longest body slips at 0.24 rad/s, leaves the ground above 50 times that speed and jams at 16 to
-    17 rad/s, so the search for jams must continue up to speeds at which weight hardly matters."""
+    where c and B (the response of the gap to N) vanish together, the last digits of a slide decide
+    between a jam and lift-off. The longest body slips at 0.24 rad/s, leaves the ground above 50
+    times that speed and jams at 16 to 17 rad/s, so the search for jams must continue up to speeds
+    at which weight hardly matters."""
     found = thresholds(a, 1.0, gravity=gravity, gyration2=gyration2, friction=friction)
     assert friction > found.painleve_friction
     assert a == 2.0 or found.lift_off_speed > 50 * known(found.slip_speed)
@@ -312,7 +313,7 @@ def test_the_slip_speed_does_not_exceed_the_lift_off_speed() -> None:
         assert 0 <= known(found.slip_speed) <= found.lift_off_speed < math.inf
 
 
-def test_nearly_round_bodies_slip_and_lift_off_together_with_infinite_friction() -> None:
+def test_nearly_round_bodies_lift_off_at_the_tip_with_infinite_friction() -> None:
     """Up to a/b = root three N of rolling vanishes on the tip first, with omega^2 = g a/(a^2 - b^2)
     and N = c = 0: slip and lift-off are one event."""
     for k in range(60):
@@ -321,8 +322,8 @@ def test_nearly_round_bodies_slip_and_lift_off_together_with_infinite_friction()
         speed2 = 9.81 * ratio / ((ratio - 1) * (ratio + 1))
         gyration2 = (ratio * ratio + 1) / 4
         flat2 = ((gyration2 + ratio**2) * speed2 + 2 * 9.81 * (ratio - 1)) / (gyration2 + 1)
-        # the closed form is for rolling that ends on the tip; it ends some 1e-7 before the tip,
-        # where c differs by the square of this distance
+        # the closed form assumes that rolling ends on the tip; it ends some 1e-7 rad earlier, which
+        # changes c only by the square of this angle
         assert found.lift_off_speed == pytest.approx(math.sqrt(flat2), rel=1e-12)
         assert known(found.slip_speed) <= found.lift_off_speed
 

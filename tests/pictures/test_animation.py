@@ -35,7 +35,6 @@ def frames(animation: RollingAnimation) -> range:
 
 
 def only(animation: RollingAnimation) -> Strip:
-    """The strip of an animation of one motion."""
     (strip,) = animation.strips
     return strip
 
@@ -226,7 +225,7 @@ def test_an_html_film_is_a_page_with_a_player(short: RollingAnimation, tmp_path:
     short.save(path)
     text = path.read_text(encoding="utf-8")
     assert text.startswith("<!DOCTYPE html>") and short._repr_html_() in text
-    assert list(tmp_path.iterdir()) == [path]  # no other file beside it
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_matplotlibs_html_has_every_frame(short: RollingAnimation, tmp_path: Path) -> None:
@@ -375,7 +374,7 @@ def test_the_last_frame_is_never_after_the_end() -> None:
         assert animation.t[-1] <= end and animation.t.size == k + 1
 
 
-def test_size_and_resolution_are_as_requested(report: rl.Trajectory, tmp_path: Path) -> None:
+def test_a_gif_has_the_requested_width(report: rl.Trajectory, tmp_path: Path) -> None:
     with matplotlib.rc_context({"savefig.dpi": 37, "savefig.bbox": "tight"}):
         rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=322, dpi=80)
     with Image.open(tmp_path / "roll.gif") as gif:

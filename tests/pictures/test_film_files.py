@@ -43,8 +43,8 @@ def test_a_failed_drawing_closes_its_figure(draw: Any, monkeypatch: Any) -> None
 
 
 @pytest.mark.parametrize("units", [1, 512, 749])
-def test_an_extremely_short_motion_is_animated(units: int) -> None:
-    """No frame lies after the end, although the number of frames is rounded up."""
+def test_an_extremely_short_motion_is_drawn_and_animated(units: int) -> None:
+    """The number of frames is rounded up, but a frame after the end would raise a ValueError."""
     end = units * 5e-324
     assert rl.simulate(rl.scenes.rocking, end).t[-1] == end
     motion = rl.simulate(rl.scenes.rocking, [0.0, end])

@@ -142,7 +142,7 @@ def test_unsorted_samples_are_drawn_in_order_of_time() -> None:
         assert np.array_equal(data(one), data(other))
 
 
-def test_the_force_axis_labels_its_logarithmic_part_and_wastes_no_space() -> None:
+def test_the_force_axis_labels_its_logarithmic_part_and_wastes_little_space() -> None:
     motion = rl.simulate(rl.Scene(2.0, 0.02, theta=0.3, friction=0.9), 2.0)
     ax = rl.plot_forces(motion, ax=new_axes()).axes[0]
     assert ax.get_ylabel() == "force [N]\nlog beyond 10"

@@ -21,8 +21,8 @@ from rolling_ellipse._pictures import sampling
 EPS = np.finfo(float).eps
 SCENES = {
     "jump": rl.scenes.jump,  # rolls, slides, flies, hits the ground and rolls again
-    "slope": rl.scenes.slope,  # slips twice, jumps twice
-    "slip": rl.scenes.slip,  # starts to slide
+    "slope": rl.scenes.slope,  # slips three times, jumps twice
+    "slip": rl.scenes.slip,  # slides first
     "bounce": rl.scenes.bounce,  # only flight, with ten impacts
     "backwards": rl.Scene(2.0, 1.0, omega=-5.2, friction=1.0),
     "settling": rl.Scene(2.0, 1.0, z=1.5, restitution=0.5, friction=0.5),  # many impacts, rest

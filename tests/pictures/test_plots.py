@@ -69,7 +69,7 @@ def test_lengths_of_a_small_body_are_labelled_in_millimetres() -> None:
 
 
 def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
-    """The motion, whose residuals f1 ... f4, df2 ... df4, gap and slip have the given errors."""
+    """A copy of the motion with given residuals f1 ... f4, df2 ... df4, gap and slip."""
     found = motion.constraint_residuals()
     position, velocity = found.position.copy(), found.velocity.copy()
     gap, slip = found.gap.copy(), found.slip.copy()

@@ -23,7 +23,7 @@ def moved(seconds: float, *scenes: rl.Scene) -> list[rl.Trajectory]:
 SLOW, FAST = rl.scenes.rolling, rl.Scene(2.0, 1.0, omega=4.0)
 REPORT_AND_ROCKING = moved(6.0, rl.scenes.report, rl.scenes.rocking)
 STILL = [*REPORT_AND_ROCKING, *moved(6.0, rl.scenes.circle)]
-FOLLOWED = moved(14.0, SLOW, FAST)  # paths of 51 m, ends 20 m apart
+FOLLOWED = moved(14.0, SLOW, FAST)  # paths of 31 and 51 m
 PARTED = moved(20.0, SLOW, FAST, rl.Scene(1.0, 1.0, omega=-2.0))  # ends 113 m apart
 SIZES = moved(6.0, rl.scenes.thin, rl.Scene(0.2, 0.1, omega=15.0, x=3.0), rl.Scene(0.7, 1.9))
 FAR = moved(6.0, rl.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0))  # alone, in kilometres
@@ -37,7 +37,6 @@ def motions(request: pytest.FixtureRequest) -> list[rl.Trajectory]:
 
 
 def compared(motions: list[rl.Trajectory], width: int = 640) -> RollingAnimation:
-    """An animation of all motions with ten frames a second."""
     return rl.animate(motions, t_end=float(motions[0].t[-1]), fps=10, width=width)
 
 
@@ -156,8 +155,7 @@ def test_texts_overlap_neither_texts_nor_bodies(motions: list[rl.Trajectory], wi
 @pytest.mark.parametrize("size", [0.01, 1.0, 1000.0])
 @pytest.mark.parametrize("slope", [0.0, 0.2])
 def test_three_motions_side_by_side_are_readable(size: float, slope: float) -> None:
-    """At 640 pixels no letter is smaller than 7 points, and no text covers another or is cut
-    off."""
+    """At 640 pixels captions have at least 7 points, and no text covers another or is cut off."""
     rate = math.sqrt(9.81 / size)
     scenes = [
         rl.Scene(size, size / 1.5, z=2 * size, omega=omega * rate, friction=0.3, slope=slope)

@@ -72,7 +72,7 @@ def expected_centre(page: Page, motion: rl.Trajectory, t: float) -> tuple[float,
 
 
 def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
-    """Centre of the drawn body, from the distances of its edge in many directions from a point.
+    """Centre of the drawn body, from the distances between a point and the edge in many directions.
 
     The marks of the tip and the contact on the edge spoil few of the directions.
     """
@@ -89,7 +89,7 @@ def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
             offsets.append((ends[0] - ends[1]) / 2)  # type: ignore[operator]
             directions.append(way)
     # each offset is about the component of the centre's shift along its direction; find the shift
-    # by least squares, each time without the worst tenth of the directions
+    # by least squares, and twice more without the worst tenth of the remaining directions
     offsets_, ways = np.array(offsets), np.array(directions)
     for _ in range(3):
         shift, *_ = np.linalg.lstsq(ways, offsets_, rcond=None)

@@ -167,7 +167,7 @@ def repeated(page: Any) -> float:
     return max(errors)
 
 
-def test_any_blow_is_computed_in_the_page(opened: Opened) -> None:
+def test_a_blow_chosen_with_a_slider_is_computed_in_the_page(opened: Opened) -> None:
     page = opened(rl.explore(rl.scenes.slope).to_html(), reduced_motion="reduce")
     page.locator(".where").fill("203")
     page.wait_for_function(f"!{PLAYER}.stale")

@@ -74,7 +74,7 @@ def test_an_impact_remains_a_jump_of_the_velocity() -> None:
     after = int(np.searchsorted(times, impact.t))
     assert times[after] == impact.t and times[after - 1] == np.nextafter(impact.t, 0)
     at = motion.sol(times[[after - 1, after]])
-    # the fall ends at a speed of sqrt(2 g · 1 m); afterwards the body rolls much more slowly
+    # the fall ends at a speed of sqrt(2 g · 1 m); afterwards the centre sinks much more slowly
     assert at.z_dot[0] == pytest.approx(-math.sqrt(2 * 9.81), rel=1e-9)
     assert abs(at.z_dot[1]) < 0.5 * abs(at.z_dot[0])
 

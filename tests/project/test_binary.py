@@ -9,8 +9,8 @@ import pytest
 from oracles.margins import told
 from rolling_ellipse import _core
 
-# Functions whose bits depend on the version of the C library, and one that older systems lack (GCC
-# below 11, macOS below 13.3).
+# Functions whose results depend on the version of the C library, and one that older systems lack
+# (GCC below 11, macOS below 13.3).
 UNWANTED = ("hypot", "hypotf", "cbrt", "lgamma", "tgamma", "_ZSt8to_charsPcS_d")
 
 
@@ -28,8 +28,8 @@ def disassembled(*options: str) -> str:
 def test_only_exact_products_in_vector_lanes_are_fused() -> None:
     """two_product in src/numerics/lanes.hpp computes x y - round(x y) with packed instructions.
 
-    A compiler that fuses products and sums on its own would also fuse additions and scalars.
-    std::fma is compiled to a function call.
+    A compiler that fuses products and sums on its own would also emit vfmadd and scalar
+    instructions. std::fma is compiled to a function call.
     """
     if platform.machine() != "x86_64":
         pytest.skip(f"the instructions are those of x86-64, not of {platform.machine()}")

@@ -1,5 +1,5 @@
 """Code lines of the core and of the package stay within a budget; `pytest -rP` shows the lines of
-each room.
+each folder.
 
 A code line is not blank and is part of neither a comment nor a docstring. The commit of a change
 that needs a larger budget states what the change replaces; a change that shrinks the code lowers

@@ -35,8 +35,8 @@ FOLDERS = (
     "numerics", "integrator", "geometry", "scene", "rolling/level", "rolling/slope",
     "rolling/stepped", "proof", "multipliers", "contact", "outcome", "", "bindings",
 )  # fmt: skip
-# Rooms and single modules of the package in the same order; "" is the package itself. Functions may
-# import a later room if it is slow to load.
+# Rooms (folders) and single modules of the package in the same order; "" is the package itself.
+# Functions may import a later room if it is slow to load.
 PACKAGE = ROOT / "python" / "rolling_ellipse"
 ROOMS = (
     "_core", "_ask", "geometry", "scenes", "_motion", "_verbs", "impacts", "report", "benchmark",
@@ -112,7 +112,7 @@ def test_the_tools_reject_faulty_sources(
     assert done.returncode == 1, done.stderr
 
 
-def test_the_contributing_page_formats_every_source() -> None:
+def test_the_contributing_page_formats_every_source_of_the_core() -> None:
     if not (ROOT / ".git").exists():
         pytest.skip("no checkout, whose files git could list")
     page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -320,7 +320,7 @@ def test_no_flag_lets_the_compiler_change_the_arithmetic() -> None:
 
 @pytest.fixture
 def fused(tmp_path: Path) -> Callable[..., list[str]]:
-    """Fused instructions in the assembly of a source, built as in CMakeLists.txt but with -mfma."""
+    """Fused instructions in an assembly made with the flags of CMakeLists.txt, -mavx2 and -mfma."""
     if platform.machine() != "x86_64":
         pytest.skip(f"-mfma is a flag of x86-64, not of {platform.machine()}")
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
@@ -349,7 +349,7 @@ def test_the_compiler_fuses_only_what_is_written_as_fused(
 
 def test_vectorization_fuses_no_further_operations(fused: Callable[..., list[str]]) -> None:
     """A compiler that vectorizes could fuse operations on packed numbers. Operations that are fused
-    without vectorization as well are fused in the source."""
+    even without vectorization are written as fused in the source."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     properties = r"set_source_files_properties\(([^)]*)PROPERTIES [^)]*COMPILE_OPTIONS (-f\S+)\)"
     vectorized = [(name, flag) for names, flag in re.findall(properties, build)

@@ -1,4 +1,4 @@
-"""The help of public names is short before the arguments, and has an example that runs."""
+"""The help of each public name starts with a short text and has an example that runs."""
 
 import doctest
 import enum
@@ -55,7 +55,7 @@ def test_all_public_names_are_found_and_their_help_starts_with_a_short_text() ->
         assert first.endswith(".") and (len(others) <= 8 or inspect.ismodule(of)), name
 
 
-def test_the_help_of_the_package_lists_every_function_under_a_task() -> None:
+def test_the_help_of_the_package_names_every_function_except_plots() -> None:
     functions = {each for each in rl.__all__ if inspect.isfunction(getattr(rl, each))}
     placed = {*re.findall(r"`(\w+)`", rl.__doc__ or "")}
     assert {each for each in functions - placed if not each.startswith("plot_")} == set()

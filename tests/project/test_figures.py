@@ -27,7 +27,7 @@ MARKED = re.compile(r"<!-- (\w+): made by .*?<!-- end of \1 -->", flags=re.DOTAL
 
 @pytest.fixture(scope="module")
 def make() -> dict[str, Any]:
-    pytest.importorskip("nbclient")  # its dependencies have no wheel without the GIL
+    pytest.importorskip("nbclient")  # its dependencies have no wheels for Python without the GIL
     return made_by("make")
 
 

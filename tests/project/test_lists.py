@@ -1,8 +1,8 @@
 """The lists "To add ..." of docs/architecture.md name every file that an addition must change.
 
 For each kind of addition, the list must have exactly the sources that name all existing things of
-that kind. PLACES has patterns of code that depends on a law or a processor; its lists may name
-functions instead of files. A test fails if a file on a list moves.
+that kind. For the kinds in PLACES, a pattern finds the sources that depend on the kind; their
+lists may name functions instead of files. A test fails if a file on a list moves.
 """
 
 import ast
@@ -25,7 +25,7 @@ NAME = re.compile(r"`([\w/.]+\.(?:hpp|cpp|pyi|py|rst))`")
 
 
 def of_room(room: str) -> list[str]:
-    """Public names that the package imports from a room, according to `__init__.pyi`."""
+    """Public names that the package imports from a room (folder), according to `__init__.pyi`."""
     lines = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8")).body
     imports = [line for line in lines if isinstance(line, ast.ImportFrom)]
     return [line.names[0].name for line in imports if (line.module or "").startswith(room)]
@@ -150,7 +150,7 @@ def named_by_the_page(kind: str) -> set[Path]:
 
 
 def holding(words: list[str]) -> set[Path]:
-    """Sources that contain every word, in any case."""
+    """Sources that contain every word, ignoring case."""
     found = set()
     inner = (path for room in (CORE, PEERS, *ROOMS) for path in room.rglob("*"))
     for path in (*PACKAGE.glob("*"), *inner):

@@ -46,7 +46,7 @@ def test_a_notebook_ends_in_an_assertion_that_the_site_folds(path: Path) -> None
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_page_has_at_least_four_words_of_text_per_shown_line_of_code(path: Path) -> None:
+def test_a_notebook_has_at_least_four_words_of_text_per_shown_line_of_code(path: Path) -> None:
     cells = nbformat.read(path, 4).cells
     words = sum(len(cell.source.split()) for cell in cells if cell.cell_type == "markdown")
     shown = [cell.source for cell in code_cells(path) if cell.metadata != FOLDED]

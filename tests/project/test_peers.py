@@ -160,13 +160,13 @@ def test_a_peer_that_is_ahead_of_the_package_is_marked() -> None:
     assert [line.split()[0] for line in lines[1:]] == list(known)
 
 
-def test_a_race_in_a_well_lasts_a_multiple_of_half_its_period() -> None:
+def test_a_race_in_a_well_lasts_the_stated_number_of_half_periods() -> None:
     scene = bench_peers.SCENES["W"]
     assert bench_peers.end_of(scene, 0.42) == 0.42 * period(scene) / 2
 
 
 def test_the_reference_of_a_race_reveals_a_small_error() -> None:
-    """The reference shares no code with exact rolling, but agrees to a few ulp of theta = 7."""
+    """The reference shares no code with exact rolling, but agrees to a few ulp of x = 6.7 m."""
     exact = bench_peers.in_40_digits(R)
     off = [float(v[0] - own) for v, own in zip(exact([T]), exact_end(T), strict=True)]
     assert 0 < max(map(abs, off)) < 1e-14

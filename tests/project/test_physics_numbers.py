@@ -1,7 +1,4 @@
-"""Public functions return the known physical numbers of the 2:1 disc on Earth.
-
-Other tests of these functions check the numbers against their definitions and in motions.
-"""
+"""Public functions return the known physical numbers of the 2:1 disc on Earth."""
 
 import math
 
@@ -51,7 +48,7 @@ def test_the_centre_path_agrees_with_project_euler_525() -> None:
     assert round(way, 8) == 21.38816906
 
 
-def test_no_body_with_an_aspect_ratio_above_9_753_rolls_over_in_contact() -> None:
+def test_a_disc_rolls_over_in_contact_up_to_an_aspect_ratio_of_9_753() -> None:
     """N at the roll-over speed reaches 0 for a/b = 9.7532168."""
     ratio = 9.7532168
     for change, possible in ((-1e-7, True), (1e-7, False)):

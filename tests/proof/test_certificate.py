@@ -2,7 +2,7 @@
 
 The oracle (oracles/rolling.py) uses Newton's law, the energy and dense samples in long double,
 refined to 1e-16; the package proves signs of polynomials. Each bound is the oracle's allowance for
-double arithmetic: 1e-12 of the terms, plus the effect of a few ulps of the energy.
+double arithmetic: 1e-12 of the terms, plus the effect of 16 ulps of the energy.
 """
 
 import math
@@ -24,7 +24,7 @@ EDGE_MARGIN = 1e-5  # relative distance from a threshold within which EDGE is al
 
 
 class Judged(NamedTuple):
-    """The package's certificates of a sample, and the true extremes, per mass."""
+    """The package's certificates of a sample, and the true extremes; forces are per unit mass."""
 
     sample: Sample
     validity: NDArray[np.object_]
@@ -136,7 +136,6 @@ def test_oracle_extremes_do_not_depend_on_the_sampling() -> None:
 
 
 def test_the_random_scenes_cover_every_case(judged: list[Judged]) -> None:
-    """Without these cases the tests of verdicts would prove little."""
     samples = [chunk.sample for chunk in judged]
     needed = np.concatenate([chunk.truth.needed for chunk in judged])
     friction = np.concatenate([sample.friction for sample in samples])
@@ -274,7 +273,7 @@ def assert_ends_there(
     end = (np.longdouble(ends) - way.base) * way.direction  # ascending forwards
     begin = way.start * way.direction
     waist = float(oracles.rolling.chart(moving).waist[0])
-    # tolerance: the rounding of the angle, and 1e-8 of the narrowest feature for a root
+    # tolerance: the rounding of the angle, and for a root 1e-8 of it or of the narrowest feature
     near = 8 * np.spacing(max(abs(ends), abs(theta))) + 1e-8 * max(abs(float(end)), waist)
     assert abs(end) <= way.turn + near
     leg = 0 if end >= begin - near else 1
@@ -343,7 +342,7 @@ def test_low_friction_ends_rolling_soon_after_a_start_with_no_friction_force(
     a: float, b: float, theta: float, side: int, friction: float
 ) -> None:
     """Rolling starts in the flat position, on the tip or where F vanishes. It ends after an angle
-    about as large as the friction, far below the resolution of a double root of the squared law."""
+    proportional to the friction, far below the resolution of a double root of the squared law."""
     with mp.workdps(DIGITS):
         gyration2 = (mp.mpf(a) ** 2 + mp.mpf(b) ** 2) / 4
         h, slope, _ = oracles.geometry.height_slopes(mp.mpf(theta), a, b)
@@ -358,8 +357,8 @@ def test_low_friction_ends_rolling_soon_after_a_start_with_no_friction_force(
         assert found.ends_at is not None
         way = side * (mp.mpf(found.ends_at) - theta)
         assert way < 1e3 * friction
-        # the angle is accurate to ulps of half a turn, or of `way` if theta = 0, and forces to
-        # 1e-12, the oracle's allowance for double arithmetic
+        # unless theta = 0, the angle is accurate only to ulps of half a turn; the 1e-12 is the
+        # oracle's allowance for the forces in double arithmetic
         near = (4 * EPS * math.pi if theta else 0) + 1e-12 * abs(way)
         for share in (0, 0.01, 0.5, 1):
             assert grip(scene, gyration2, theta + side * share * max(way - near, 0)) > 0
@@ -394,7 +393,7 @@ def test_a_body_falling_from_its_tip_rolls_until_the_law_fails(
 
 @pytest.mark.parametrize("shift", [1e-3, -1e-3])
 def test_a_wrong_ends_at_is_detected(shift: float) -> None:
-    """Grip is lost at 0.2488 rad and nowhere else nearby."""
+    """Grip is lost at 0.2166 rad and nowhere else nearby."""
     scene = Scene(2.0, 1.0, friction=0.2, omega=2.0)
     moving = oracles.rolling.motion(
         *(np.array([value]) for value in (2.0, 1.0, 1.25, 9.81, 0.0, 2.0))
@@ -474,7 +473,7 @@ def test_a_body_at_rest_in_equilibrium_is_never_invalid(a: float, b: float, thet
 @pytest.mark.parametrize(
     "scene",
     [
-        # Rolling over the tip of 2:1 keeps N > 0 up to omega^2 = g a/(a^2 - b^2).
+        # Rolling over the tip of the 2:1 disc keeps N > 0 up to omega^2 = g a/(a^2 - b^2).
         Scene(2.0, 1.0, theta=math.pi / 2, omega=2 * math.sqrt(9.81 * 2 / 3)),
         *(Scene(2.0, 1.0, theta=theta, omega=omega, friction=0.0)
           for theta in (0.4, -2.0) for omega in (0.0, 1.0)),

@@ -42,7 +42,6 @@ def half_turn(start: float, direction: float, thinness: float) -> Floats:
 
 
 def scan(scene: Scene, most: int = 30) -> Scan:
-    """Scan a motion forwards in time."""
     a, b, k2, mu = scene.a, scene.b, scene.gyration2, scene.friction
     into, along = GRAVITY * math.cos(scene.slope), GRAVITY * math.sin(scene.slope)
     angle, least = scene.theta, math.inf
@@ -125,8 +124,8 @@ def test_no_verdict_is_wrong(seed: int) -> None:
 @pytest.mark.parametrize("direction", [1, -1])
 def test_a_nearly_round_body_rolls_far_and_stops_rolling_at_its_bound(direction: int) -> None:
     """The forces are linear in W, so that at each angle the law holds while W is below a bound
-    W_plus. Downhill W grows by w per half turn. Rolling ends in the half turn after the minimum of
-    (W_plus - W)/w over the angle."""
+    W_plus. Downhill W grows by w per half turn. The minimum of (W_plus - W)/w over the angle is the
+    number of half turns after which rolling ends, to within one."""
     scene = Scene(1.0, 1 - 1e-5, slope=0.05, omega=3.0 * direction, friction=0.5)
     a, b, k2 = scene.a, scene.b, scene.gyration2
     into, along = GRAVITY * math.cos(0.05), GRAVITY * math.sin(0.05)
@@ -170,7 +169,7 @@ def test_constant_forces_have_an_exact_friction_threshold() -> None:
             assert found.smallest_normal_force == pytest.approx(GRAVITY * math.cos(0.2), rel=1e-14)
 
 
-def test_extremes_are_stated_only_for_rocking() -> None:
+def test_extremes_are_finite_for_rocking_and_infinite_downhill() -> None:
     scene = Scene(2.0, 1.0, slope=0.1, theta=0.4, omega=0.0)
     found = certify(scene)
     motion = rl.simulate(scene, np.linspace(0, rl.period(scene), 20001))
@@ -220,7 +219,7 @@ def test_a_nearly_round_body_on_a_steep_slope_rolls_until_n_vanishes(roundness: 
         found = motion.sol(np.linspace(0.0, end, 1001))
         force = found.normal_force / scene.mass
         size = GRAVITY * math.cos(slope) + 2 * roundness * np.max(found.omega**2)
-        # some roundings of theta'', as large as gravity, and of h', as large as the roundness
+        # some roundings of theta'', of the order of gravity, and of h', of the order of roundness
         rounding = 64 * EPS * (size + roundness * GRAVITY) * (1 + np.abs(found.theta).max())
         assert np.all(force >= -rounding) and abs(force[-1]) <= rounding
     assert ended >= 10

@@ -22,7 +22,7 @@ def rolling_scenes(draw: Any) -> Scene:
 @given(st.data())
 def test_more_friction_never_ends_rolling_sooner(data: Any) -> None:
     """The set of states in which the ground can hold the body only grows with mu: valid rolling
-    stays valid, and rolling never ends sooner."""
+    stays valid, and on level ground rolling never ends sooner."""
     scene = data.draw(rolling_scenes())
     more = scene.friction * (1 + data.draw(powers(-16, 3))) + data.draw(powers(-16, 1))
     less, better = certify(scene), certify(scene.replace(friction=more))
@@ -69,7 +69,7 @@ def test_neither_units_nor_mirroring_changes_a_certificate(data: Any) -> None:
 
 
 @given(st.data())
-def test_an_outcome_does_not_depend_on_units(data: Any) -> None:
+def test_an_outcome_depends_on_neither_units_nor_mirroring(data: Any) -> None:
     of = data.draw(motions())
     friction = data.draw(FRICTIONS)
     metre, second = (2.0 ** data.draw(st.integers(-12, 12)) for _ in range(2))

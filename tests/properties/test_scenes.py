@@ -89,7 +89,6 @@ def test_scaling_units_by_powers_of_two_changes_no_bit(data: Any) -> None:
 
 @given(st.data())
 def test_a_shift_along_the_ground_changes_only_x(data: Any) -> None:
-    """A shift along the ground is only added to x, to within the rounding of the sum."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
     away = data.draw(st.floats(-1e3, 1e3)) * max(scene.a, scene.b)
@@ -173,7 +172,7 @@ def test_a_reversed_motion_without_friction_returns_to_its_start(data: Any) -> N
     times = np.linspace(0.0, span, 100)
     there = simulate(scene, times, model="contact", **ENOUGH)
     assume(there.t.size == times.size and len(there.events) <= 3)
-    # a slide that lifts off lands with an impact
+    # without LIFT_OFF, whose reverse would be an impact
     assume({each.kind for each in there.events} <= {EventKind.IMPACT})
     flying = there.at(span).mode is Mode.FLIGHT
     assume(flying == (scene.initial_state.mode is Mode.FLIGHT))
@@ -208,7 +207,7 @@ def test_a_reversed_motion_without_friction_returns_to_its_start(data: Any) -> N
         for name, size in sizes.items():
             errors[name] += ROUNDINGS * EPS * size
         known += spread(way_back(share * span), turned_round(at), errors)
-    # near a tip smaller errors than those assumed may change the start more
+    # near a tip the change is not proportional to the error: smaller errors may have larger effects
     assume(known[0] < 1e-3)
     grain = ROUNDINGS * EPS * max(1.0, abs(scene.theta), abs(at.theta))  # rounding of any angle
     own = grain * speed * np.array([1 / speed, 1 / length, span, span, 1, 1])

@@ -131,7 +131,7 @@ struct PhaseTime {
     T quarter_path;            // path of the centre in a quarter of a rotation
     // The following members give an initial guess of the point at a given time.
     static constexpr int most_steps = 160;  // largest number of steps in a map
-    T slope[most_steps + 3];                // dt/dy at the steps, and one step beyond both ends
+    T slope[most_steps + 3];                // dt/dy at the steps, and one step beyond each end
     T time[most_steps + 2];  // time from the flat position to each step, from cubics for dt/dy
 };
 

@@ -80,7 +80,6 @@ struct FlowColumns {
     FlowColumns from(std::size_t begin) const { return {theta + begin, omega + begin, x + begin}; }
 };
 
-// Writes a sample into element i of each column.
 inline void store(const FlowSample& sample, const FlowColumns& columns, std::size_t i) {
     columns.theta[i] = sample.theta;
     columns.omega[i] = sample.omega;

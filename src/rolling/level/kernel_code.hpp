@@ -98,8 +98,9 @@ void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map
 }
 
 // Whether a series is accurate: its last term may be at most 1e-15, and the term before it 2e-14,
-// times the larger of its leading terms and the number to which the series is added. Both terms are
-// tested, since one may be small by chance. The omitted terms are about a twentieth of the last.
+// times the largest of its terms of order 1 and 2 and the number to which the series is added. The
+// last two are tested, since one may be small by chance; the omitted ones are about a twentieth of
+// the last.
 inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
@@ -152,8 +153,8 @@ struct alignas(64) Block {
     double quarters[block];
 };
 
-// Subtracts n half turns, each of duration T, from t + start_time in double-double arithmetic: at
-// late times, even the low part of n T is longer than a piece.
+// Subtracts the duration of whole half turns from t + start_time in double-double arithmetic: at
+// late times, even the low part of this duration is longer than a piece.
 void reduce(const FlowReader& motion, const double* times, int n, Block& block) {
     const DoubleDouble period = motion.half_turn;
     const DoubleDouble start = motion.start_time;

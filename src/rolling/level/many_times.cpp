@@ -212,8 +212,8 @@ std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // No table is built for fewer times. A table pays from ten samples on, but a root search, with
-    // a few times in each of many calls, must always get the same bits.
+    // No table is built for fewer times. A table pays off from ten samples on, but below this limit
+    // a root search, whose calls have a few times each, always gets the same bits.
     constexpr std::size_t few = 40;
     if (expected >= few) table_ = flow_table(flow);
 }

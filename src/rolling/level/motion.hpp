@@ -30,7 +30,6 @@ inline PhaseStart<double> phase_start(const RollingStart& from) {
             from.omega,     height.total,        height.over_tip,   height.over_flat};
 }
 
-// Stores the start of one body in a lane.
 inline void set_lane(PhaseStart<Pack>& start, int lane, const PhaseStart<double>& from) {
     constexpr int count = sizeof from / sizeof(double);
     static_assert(sizeof start == count * sizeof(Pack));
@@ -104,7 +103,7 @@ void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
 
 // Whether a move is so short that it does not need the time of a quarter. Since dt/dy falls no
 // faster than e^(-2y), such a move covers less than 0.81 in y, whereas half a quarter is at least
-// 0.87.
+// 0.86.
 template <class T>
 inline Mask<T> is_short(const PhaseMotion<T>& motion, T t) {
     constexpr double at_first_speed = 0.4;  // distance in y if dt/dy stayed constant

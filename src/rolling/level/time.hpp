@@ -1,11 +1,11 @@
 // Time as a function of the phase of an exact rolling motion, and its inverse, from integrals of
 // the rates of rolling/level/rates.hpp.
 //
-// The rates are even about the flat position and the tip and analytic for |Im y| < pi/2. Therefore,
-// the trapezoidal rule gives the time of a quarter with an error that falls like exp(-pi^2/step)
-// (L. N. Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part of a quarter is integrated
-// from its start by Gauss-Legendre quadrature, so that a short interval has the same relative
-// accuracy as a long one.
+// dt/dy is even about the flat position and about the tip or turning point, and analytic for
+// |Im y| < pi/2. Therefore, the trapezoidal rule gives the time of a quarter with an error that
+// falls like exp(-pi^2/step) (L. N. Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part
+// of a quarter is integrated from its start by Gauss-Legendre quadrature, so that a short interval
+// has the same relative accuracy as a long one.
 #pragma once
 
 #include <array>

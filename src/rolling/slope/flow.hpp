@@ -24,8 +24,7 @@ struct Sum {
     SlopePlace end;
 };
 
-// The motion before the first turning point in reverse, until the body is back at the start of the
-// series.
+// The motion before the first turning point, in reverse, back to the point where the series start.
 struct Mirror {
     DoubleDouble turning;
     SlopePlace end;
@@ -84,8 +83,8 @@ FlowSample sample(const SlopeFlow& flow, double t);
 void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples);
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 
-// Time of 1e15 half turns or swings [s]. Returns infinity if the motion has not been prepared that
-// far or, to save work, if the time t is far below the limit.
+// Time of 1e15 half turns or half swings [s]. Returns infinity if the motion has not been prepared
+// that far or, to save work, if the time t is far below the limit.
 double longest_time(const SlopeFlow& prepared, double t = infinity);
 
 // Time between two turning points of a body that rocks, in units of the body; empty for other

@@ -25,8 +25,9 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
                                : -body.pull * std::sin(over_lying) * std::cos(over_upright);
 }
 
-// With D h^2 = I = d0 + d1 sin^2 phi, u = h^2, p = h h' = c2 sin phi cos phi, q = c2 cos 2 phi,
-// lambda = omega/h and S = d1/c2, physics (18) becomes, with I as the only divisor,
+// With D h^2 = I = d0 + d1 sin^2 phi, u = h^2, p = h dh/dphi = c2 sin phi cos phi,
+// q = c2 cos 2 phi, lambda = omega/h, S = d1/c2 and primes for time derivatives, physics (18)
+// becomes, with I as the only divisor,
 //     I lambda' = g_along u - g_into p - S p omega lambda,   omega = h lambda,   h' = p lambda
 //     u' = 2 p omega,   I' = S u',   p' = q omega,   q' = -4 p omega
 // Near an equilibrium the first coefficient of g_along u - g_into p is a small difference, which

@@ -9,7 +9,7 @@ namespace rolling_ellipse {
 namespace {
 
 constexpr double least_levels = 0.25;   // least W/w at which sums over half turns are used
-constexpr double asymptotic_from = 14;  // W/w from which R(W) is accurate to 2e-17
+constexpr double asymptotic_from = 14;  // W/w from which R(W/w) is accurate to 2e-17
 constexpr double few = 4;               // fewer half turns than this are cheaper to add one by one
 constexpr std::size_t most_begins = 1 + std::size_t(asymptotic_from + few);
 constexpr std::size_t usual_panels = 12;

@@ -90,8 +90,8 @@ PartArray node_times(const RunPart& part, double gained);
 // the angle.
 double about(const SlopeRun& run, double since);
 
-// The duration of the first n half turns of a complete run. The first terms of the sum are stored
-// for later calls.
+// The duration of the first n half turns of a complete run. Downhill, the first terms of the sum
+// are stored for later calls.
 class RunTimes {
   public:
     explicit RunTimes(const SlopeRun& run) : run_(run) {}

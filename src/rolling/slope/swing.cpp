@@ -73,7 +73,7 @@ struct WellPlaces : Positions {
 }
 
 // The coordinate v of a point, given its angle ahead of the centre; accurate even for a small
-// angle. NaN beyond the reach of the panel.
+// angle. In a panel about a turning point, NaN for a point a quarter turn or more from the rim.
 double coordinate(const WellPanel& panel, double ahead) {
     const double tan = std::tan(ahead);
     const double centre = panel.grade * panel.value;
@@ -143,8 +143,8 @@ ROLLING_ELLIPSE_WIDE Change change_of_energy(const SlopeBody& body, const WellPa
     return {half * total, lane_of(rates, 0), (lane_of(rates, 2) - lane_of(rates, 1)) / (2 * near)};
 }
 
-// Estimates the coordinate between 0 and `most` at which W has changed by `energy` since the
-// bottom, from a cubic through four values of the moment divided by the coordinate.
+// Estimates the coordinate between 0 and `most` at which W has changed by `energy` from its
+// value at the bottom, from a cubic through four values of the moment divided by the coordinate.
 ROLLING_ELLIPSE_WIDE double estimate(const SlopeBody& body, const WellPanel& panel, double energy,
                                      double most) {
     constexpr int steps = 3;
@@ -199,7 +199,7 @@ struct TurningPoints {
     double ahead;
 };
 
-// The turning points of a motion that starts in a well; empty if a turning point is near the rim.
+// The turning points of a motion that starts in a well; empty if a turning point is near a rim.
 std::optional<TurningPoints> turning_points(const SlopeBody& body, const Well& well, double angle,
                                             double from_bottom, double energy) {
     constexpr double inside = 0.8;    // largest share of the way from the bottom to a rim
@@ -348,9 +348,8 @@ Ahead ahead_at(const WellSide& side, double angle, double to_bottom) {
 
 // -------------------------------------------------------------------------------- reading
 
-// The side and the part in which the body is at a given time, the time that it takes from the end
-// of the part nearer the turning point to its position, and the direction of motion: +1 towards the
-// bottom.
+// The side and the part in which the body is at a given time, the time between its position and the
+// end of the part nearer the turning point, and the direction of motion: +1 towards the bottom.
 struct Phase {
     std::size_t side;
     std::size_t part;
@@ -375,7 +374,6 @@ Phase phase_at(const Swing& swing, double time) {
     return found;
 }
 
-// Prepares the computation of points on a part.
 ROLLING_ELLIPSE_WIDE WellReading well_reading(const RunPart& part) {
     PartArray level = part.level;
     for (int i = 0; i < part_order; ++i) {

@@ -21,8 +21,8 @@ struct SpecificEnergy {
     double total() const { return kinetic + potential; }
 };
 
-// The energy of a state, with x = 0 at the start of the motion, and the largest constraint
-// residual: |f2| or |f3| divided by the long semi-axis, or |f4|.
+// The energy of a state, with x = 0 at the start of the motion, and the largest constraint residual
+// (geometry/constraints.hpp): |f2| or |f3| divided by the long semi-axis, or |f4|.
 struct Invariants {
     SpecificEnergy energy;
     double residual;
@@ -92,7 +92,6 @@ class RollingEquation {
         return {acceleration(at.sin, at.cos, omega), along, up};
     }
 
-    // The contact force on a body of the given mass.
     ContactForce force(double mass, const Geometry& at, double omega) const {
         const auto [normal, friction] = centre(at, omega).force_per_mass;
         return {mass * normal, mass * friction};

@@ -41,9 +41,9 @@ ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double middle, const
     std::memcpy(values, &z, sizeof z);
 }
 
-// The path of the centre at many angles, each usually close to the previous one, from Taylor series
-// of the integral of h, physics (9), each for an interval of angles. The intervals are stored,
-// since a body that rolls over passes through the same ones in each half turn.
+// The path of the centre at many angles, each usually close to the previous one. Each interval of
+// angles has a Taylor series of the integral of h, physics (9). The intervals are stored, since a
+// body that rolls over passes through the same ones in each half turn.
 class PathSeries {
   public:
     explicit PathSeries(const Axes& axes)
@@ -96,7 +96,7 @@ class PathSeries {
     }
 
     Interval around(double angle) {
-        constexpr std::size_t most_known = 256;  // stored intervals; a thin body needs 100
+        constexpr std::size_t most_known = 256;  // limit on stored intervals; a thin body needs 100
         if (!(angle <= largest_in_quarters)) {
             return {angle, angle, angle, {centre_path(axes_, angle)}};
         }
@@ -115,8 +115,8 @@ class PathSeries {
     }
 
     // An interval that contains an angle, obtained by halving [n, n + 1) until the width is at most
-    // 1/3.5 of the distance from a root of h, so that a series of 17 terms has an error of less
-    // than 1e-17 times h times the width.
+    // 1/3.5 of the distance from the nearest root of h, so that a series of 17 terms has an error
+    // of less than 1e-17 times h times the width.
     Interval interval_at(double angle) const {
         constexpr double share = 3.5;
         Interval interval;
