@@ -50,9 +50,9 @@ Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
 
 // The outcome for a rolling circle, which has no tip, within half a turn.
 Outcome outcome_of_circle(const SlopeFlow& flow) {
-    const double uphill = flow.start.omega;
-    if (uphill >= 0) return Outcome::rolls_over;
-    return square(uphill) < 2 * pi * flow.acceleration ? Outcome::rocks : Outcome::rolls_over;
+    const double omega = flow.start.omega;
+    if (omega >= 0) return Outcome::rolls_over;
+    return square(omega) < 2 * pi * flow.acceleration ? Outcome::rocks : Outcome::rolls_over;
 }
 
 // The outcome for a body that rolls on a slope, from its power series.

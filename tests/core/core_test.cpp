@@ -90,7 +90,7 @@ void a_polynomial_that_touches_zero_has_no_sign() {
 
 // Each segment provides coordinates, states and flow samples of the same motion. The body rolls,
 // slides, leaves the ground and lands.
-void every_segment_knows_every_kind_of_sample() {
+void every_segment_provides_every_kind_of_sample() {
     const Scene scene = bouncing(0.0, 5.5, 0.3);
     const Settings settings = settings_of(Model::automatic, Method::automatic);
     const Solution solution = simulate(scene, settings, 3.0, [] {});
@@ -178,7 +178,7 @@ int main() {
     equations_are_solved_whatever_their_order(std::complex<double>(0.0, 2.0));
     the_first_place_where_a_polynomial_is_negative();
     a_polynomial_that_touches_zero_has_no_sign();
-    every_segment_knows_every_kind_of_sample();
+    every_segment_provides_every_kind_of_sample();
     needed_friction_of_special_forces();
     every_vector_level_has_the_same_bits();
     return verdict(failures);

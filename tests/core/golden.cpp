@@ -209,7 +209,8 @@ const char* word(Validity validity) {
 
 const char* word(EventKind kind) {
     constexpr const char* words[] = {"slip",   "stick", "reverse", "lift_off",
-                                     "impact", "rest",  "jam"};
+                                     "impact", "rest",  "jam",     "blow"};
+    static_assert(std::size(words) == std::size(names<EventKind>));
     return words[static_cast<int>(kind)];
 }
 

@@ -82,7 +82,7 @@ def luminance(colour: Any) -> float:
 def shows_something(figure: Figure) -> bool:
     """True if each axes has a point of a curve or a corner of a patch or text inside its frame.
 
-    Lines across the whole axes, which are placed in fractions of the axes, do not count.
+    Lines and spans across the whole axes, which are placed in fractions of the axes, do not count.
     """
     figure.draw_without_rendering()
     for ax in figure.axes:
@@ -90,7 +90,9 @@ def shows_something(figure: Figure) -> bool:
         for line in ax.lines:
             if line.get_transform().contains_branch(ax.transData):
                 points.append(line.get_transform().transform(line.get_xydata()))
-        points += [body.get_window_extent().get_points() for body in ax.patches]
+        across = (ax.get_xaxis_transform(), ax.get_yaxis_transform())
+        bodies = (body for body in ax.patches if body.get_data_transform() not in across)
+        points += [body.get_window_extent().get_points() for body in bodies]
         if not ax.get_window_extent().padded(1).count_contains(np.concatenate(points)):
             return False
     return len(figure.axes) > 0

@@ -206,5 +206,5 @@ def test_a_motion_may_last_1e15_half_turns_and_not_an_ulp_longer() -> None:
     body = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
     longest = 1e15 * (0.5 * period(Scene(2.0, 1.0, theta=0.2, omega=3.2)))
     assert np.isfinite(flow(longest, **body)).all()
-    with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns or swings, "):
+    with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns or half swings, "):
         flow(np.nextafter(longest, np.inf), **body)

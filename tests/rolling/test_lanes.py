@@ -155,7 +155,7 @@ def test_an_invalid_value_is_reported_with_its_index(level: str, workers: int, n
 def test_a_time_that_is_too_long_is_reported_before_later_invalid_values(level: str) -> None:
     motions = scenes(40, 6, ratio=10.0, half_turns=10.0)
     motions["t"][3], motions["a"][5] = 1e30, -1.0
-    with pytest.raises(ValueError, match=r"^t\[3\] must be at most 1e15 half turns or swings, "):
+    with pytest.raises(ValueError, match=r"^t\[3\] must be at most 1e15 half turns or half"):
         states(level, motions)
 
 

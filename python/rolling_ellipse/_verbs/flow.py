@@ -43,7 +43,7 @@ def flow(
     Parameters
     ----------
     t : float or array_like
-        Time since the start [s], of any sign; more than 1e15 half turns or swings are rejected.
+        Time since the start [s], of any sign; more than 1e15 half turns or half swings are refused.
     a, b : float or array_like
         Semi-axes [m].
     theta, omega : float or array_like

@@ -53,8 +53,8 @@ def simulate(
     t : float or array_like, shape (n,)
         End time (for 1001 evenly spaced samples), or strictly increasing sample times >= 0 [s]. A
         tuple (0, end), which is a time span in other programs, is rejected because it would mean
-        two samples, as the list [0, end] does. Rolling for more than 1e15 half turns or swings is
-        rejected because a double cannot resolve its phase.
+        two samples, as the list [0, end] does. Rolling for more than 1e15 half turns or half swings
+        is rejected because a double cannot resolve its phase.
     model : {"auto", "rolling", "multipliers", "contact"}
         "rolling" is rolling without slip; `certify` states how long it is valid. "contact" is the
         complete motion, in which the body may roll, slide, fly, hit the ground and come to rest;

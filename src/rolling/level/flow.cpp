@@ -118,7 +118,7 @@ double longest_time(const RollingFlow& flow) { return 1e15 * (0.5 * period(flow)
 void validate_time(double t, double longest, const std::string& name) {
     if (!std::isfinite(t)) refuse(name, "finite [s]", t);
     if (std::abs(t) > longest) {
-        refuse(name, "at most 1e15 half turns or swings, " + text(longest) + " [s]", t);
+        refuse(name, "at most 1e15 half turns or half swings, " + text(longest) + " [s]", t);
     }
 }
 
