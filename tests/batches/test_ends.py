@@ -94,8 +94,8 @@ def test_errors_of_ends_are_the_exceptions_that_simulate_raises() -> None:
 
 @pytest.mark.parametrize("share", [1e-6, 1e-5, 1e-3, 1e-2])
 def test_bounces_below_the_rest_speed_are_a_single_event(share: float) -> None:
-    """The nth rebound of a dropped disc has e^n times the speed of its first impact. In place of
-    the first rebound below the rest speed, and of all later ones, there is a single event, REST."""
+    """The nth rebound of a dropped disc has e^n times the speed of its first impact. The first
+    rebound below the rest speed, and all later ones, are replaced by a single event, REST."""
     e, speed, g = 0.6, 3.0, 9.81
     disc = rl.Scene(1.0, 1.0, z=1.0 + speed**2 / (2 * g), friction=0.0, restitution=e, gravity=g)
     rest_speed = share * np.sqrt(g)

@@ -108,7 +108,7 @@ def test_results_are_bit_identical_on_every_pool(make: Callable[[], Any], tmp_pa
 
 
 def test_few_or_no_elements_give_the_same_result_as_without_an_executor() -> None:
-    """Scalars give scalars. Many times of one body, evaluated with a series, form one task."""
+    """Scalars give scalars. From 40 times on, a motion is evaluated with Taylor series."""
     body = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0}
     for t in (1.0, [], [1.0], np.linspace(0, 9, 39), np.linspace(0, 9, 41), [[1.0], [2.0]]):
         for each in (body, body | {"a": [2.0]}):
@@ -238,7 +238,7 @@ def test_flow_and_classify_raise_the_error_of_the_executor() -> None:
 def test_a_killed_process_loses_only_its_unfinished_scenes(tmp_path: Path) -> None:
     """A killed process breaks its pool: finished chunks are kept, and all other scenes become
     WorkerErrors. The processes are killed after a chunk of scenes at rest, during a scene that
-    would take hours."""
+    would take minutes."""
     quick, out = [Scene(2.0, 1.0)] * 16, tmp_path / "out"
     with processes() as pool:
 

@@ -20,7 +20,7 @@ from oracles.files import put_together, taken_apart
 from oracles.limits import ctrl_c_after, files_of_at_most
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
-from rolling_ellipse._verbs.batches import folders  # a test changes its version
+from rolling_ellipse._verbs.batches import folders  # a test replaces its `version`
 
 GRID: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.3, "omega": np.linspace(0.1, 1.4, 70)}
 UNUSUAL = [  # negative zeros, infinite friction, omitted arguments, numbers with 16 or 17 digits
@@ -147,7 +147,7 @@ def test_an_unknown_schema_of_a_folder_is_reported(schema: int, cure: str, out: 
         simulate_many(GRID, TIMES, out=out)
 
 
-def test_anything_but_a_folder_of_motions_is_rejected_and_left_alone(tmp_path: Path) -> None:
+def test_a_folder_with_foreign_files_is_rejected_and_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("kept")
     (tmp_path / "lost+found").mkdir()
     (tmp_path / ".DS_Store").write_text("kept")
@@ -162,7 +162,7 @@ def test_anything_but_a_folder_of_motions_is_rejected_and_left_alone(tmp_path: P
         load_many(tmp_path / "none")
     assert sorted(os.listdir(tmp_path)) == [".DS_Store", "lost+found", "mine.txt"]
     (tmp_path / "mine.txt").unlink()
-    simulate_many(GRID, TIMES, out=tmp_path)  # the folder may contain foreign files
+    simulate_many(GRID, TIMES, out=tmp_path)  # hidden files and lost+found are accepted
     require_equal(load_many(tmp_path), simulate_many(GRID, TIMES))
 
 
@@ -177,7 +177,7 @@ def remake(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "stride"), [("chunk", 17), ("request.npz", 17), ("end.json", 1)])
-def test_every_damaged_byte_is_detected_or_harmless(name: str, stride: int, small: Path) -> None:
+def test_a_damaged_byte_is_detected_or_harmless(name: str, stride: int, small: Path) -> None:
     """Reading a file with a changed byte raises an error that names the file, unless the byte is
     insignificant, like the dates in a zip archive. Calling simulate_many again repairs chunks and
     end.json, but rejects a damaged request.npz until that file is removed."""
@@ -214,8 +214,8 @@ def test_a_file_with_foreign_content_is_rejected(name: str, content: bytes, smal
 
 
 @pytest.mark.parametrize("count", [-1, 0, 2, 4, 49, 10**6, 10**18, "3", 3.0, True, None])
-def test_an_end_file_with_another_scene_count_is_rejected(count: Any, small: Path) -> None:
-    """The folder has three scenes; another count would need other chunks."""
+def test_an_end_file_with_a_wrong_scene_count_is_rejected(count: Any, small: Path) -> None:
+    """The right count is the int 3."""
     end = json.loads((small / "end.json").read_text())
     (small / "end.json").write_text(json.dumps(end | {"scenes": count}))
     with pytest.raises(ValueError, match=r"end\.json|the file 00000001-"):
@@ -245,7 +245,7 @@ def test_a_folder_merged_from_two_requests_is_rejected(
     for call in (request, request | changes):
         with pytest.raises(ValueError, match=r"^out must be a folder of the same"):
             simulate_many(**call, out=out)
-    for name in (*theirs, "request.npz", "end.json"):  # as the error message advises
+    for name in (*theirs, "request.npz", "end.json"):  # remove the files of the other request
         (out / name).unlink()
     simulate_many(**request, out=out)
     require_equal(load_many(out), simulate_many(**request))
@@ -326,7 +326,7 @@ def test_a_full_disk_leaves_the_request_intact(out: Path) -> None:
 
 
 def test_an_interrupt_loses_no_finished_chunk(out: Path) -> None:
-    """Sixteen scenes at rest finish at once; the next one, which takes hours, is interrupted."""
+    """Sixteen scenes at rest finish at once; the next one, which takes minutes, is interrupted."""
     quick = [Scene(2.0, 1.0)] * 16
 
     def last() -> Iterator[Scene]:

@@ -1,4 +1,4 @@
-"""`simulate_many` equals `simulate` bit for bit, and returns exceptions for failed motions."""
+"""`simulate_many` agrees with `simulate` bit for bit, and returns exceptions for failed motions."""
 
 import copy
 import inspect
@@ -51,8 +51,8 @@ def test_simulate_many_equals_simulate_bit_for_bit(way: dict[str, Any], workers:
 
 
 def test_the_settings_cover_every_kind_of_result() -> None:
-    """The settings in WAYS give complete motions, motions that stop early for either reason, and
-    both types of exceptions."""
+    """The settings in WAYS give complete motions, motions that lose validity or exceed
+    `max_events`, and both types of exceptions."""
     every = {name: simulate_many(NAMED, TIMES, **way) for name, way in WAYS.items()}
     kinds = {name: {type(each) for each in answers} for name, answers in every.items()}
     assert kinds["rolling"] == {rl.Trajectory, ValueError}
@@ -64,7 +64,7 @@ def test_the_settings_cover_every_kind_of_result() -> None:
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
-def test_returned_arrays_equal_the_listed_motions_bit_for_bit(way: dict[str, Any]) -> None:
+def test_returned_arrays_equal_those_of_the_listed_motions(way: dict[str, Any]) -> None:
     """Samples that a motion has not reached, or whose scene is refused, are NaN."""
     names = ("x", "theta", "omega", "z", "friction_force", "mode")
     listed = simulate_many(NAMED * 3, TIMES, **way)
@@ -79,12 +79,12 @@ def test_returned_arrays_equal_the_listed_motions_bit_for_bit(way: dict[str, Any
     errors = {(i,): str(each) for i, each in enumerate(listed) if isinstance(each, Exception)}
     assert {place: str(each) for place, each in arrays.errors.items()} == errors
     for name, values in simulate_many(NAMED * 3, TIMES, returns=names[:2], **way).items():
-        assert np.array_equal(values, arrays[name], equal_nan=True)  # no Trajectory is created here
+        assert np.array_equal(values, arrays[name], equal_nan=True)  # this needs no Trajectory
 
 
 def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
-    """An axis along which a single argument varies has the name of this argument. An axis of
-    several arguments, or of the scenes of an iterable, is called scene."""
+    """An axis along which a single argument varies is named after it (omega0 for omega). An axis
+    of several arguments, or of the scenes of an iterable, is called scene."""
     b, speeds = np.linspace(0.5, 2.0, 3), np.array([0.5, 3.0, 6.0, 6.0])
     grid = {"a": 2.0, "b": b[:, None], "omega": speeds, "friction": 0.8}
     data = simulate_many(grid, TIMES, returns=("theta", "z")).to_xarray()
@@ -112,7 +112,8 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("way", ["auto", "multipliers", "not raised"])
 def test_motions_are_read_when_they_are_first_used(way: str) -> None:
-    """Motions can be read in any order. Reading the last one of a chunk frees its tables."""
+    """Motions can be read in any order. Reading the last unread one of a chunk frees the
+    tables of the chunk."""
     motions, expected = (run(NAMED * 2, TIMES, **WAYS[way]) for run in (simulate_many, singly))
     assert type(motions) is list and len(motions) == len(expected)
     unread = {i for i, each in enumerate(motions) if UNREAD in vars(each)}
@@ -151,7 +152,6 @@ def test_times_are_accepted_as_in_simulate(t: Any) -> None:
 
 
 def test_bodies_at_the_limits_do_not_affect_their_neighbours() -> None:
-    """In a batch, bodies of extreme shapes and sizes move as in `simulate`, bit for bit."""
     shapes = [(1e3, 1.0), (1.0, 1e3), (1.0, 1.0), (1e-30, 1e-30), (1e30, 1e28)]
     bodies = [Scene(a, b, omega=math.sqrt(20 / max(a, b))) for a, b in shapes]
     t = [0.0, 1e-3, 1e9]
@@ -169,7 +169,7 @@ def test_arrays_broadcast_in_c_order() -> None:
         for jz, a, mu in itertools.product([-1.0, -20.0], a, friction)
     ]
     require_same(motions, singly(scenes, TIMES))
-    assert list(map(repr, scenes)) == [repr(each.scene) for each in motions]  # with signs of zeros
+    assert list(map(repr, scenes)) == [repr(each.scene) for each in motions]  # even -0.0
 
 
 def test_no_two_arguments_of_a_scene_are_swapped() -> None:
@@ -203,7 +203,7 @@ def test_an_empty_batch_gives_an_empty_result(nothing: Any, tmp_path: Path) -> N
 @pytest.mark.parametrize(
     "given",
     [
-        {"a": [], "inertia": 1e9},  # the largest inertia depends on a
+        {"a": [], "inertia": 1e9},  # the largest valid inertia depends on a
         {"mass": [], "inertia": 1e9},
         {"omega": [], "friction": math.inf, "x_dot": 3.0},  # valid if the body rolls
         {"a": [], "b": []},
@@ -277,7 +277,7 @@ def test_scenes_are_consumed_only_as_needed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_ctrl_c_interrupts_scenes_that_would_take_hours(workers: int) -> None:
+def test_ctrl_c_interrupts_scenes_that_would_take_minutes(workers: int) -> None:
     """The interrupt stops a scene between two steps, in any thread, and leaves no thread behind."""
     before = len(list(Path("/proc/self/task").iterdir()))
     with ctrl_c_after(0.2):

@@ -189,7 +189,7 @@ def every_impact(one: Any, most: int) -> list[tuple[str, float]]:
 
 @pytest.mark.parametrize("count", [11, 21, 22, 40, 200])
 @pytest.mark.parametrize("sticks", [True, False])
-def test_bounces_may_be_listed_up_to_any_cutoff(count: int, sticks: bool) -> None:
+def test_bounces_may_be_listed_up_to_any_cutoff_near_their_end(count: int, sticks: bool) -> None:
     """After 200 bounces the times between them are below an ulp."""
     one = benchmark.problem("hit.settle")
     events = every_impact(one, count)
@@ -253,8 +253,8 @@ def test_a_resting_body_must_neither_rock_nor_move(column: int, word: str) -> No
     assert word in scores[0].reason
 
 
-def test_a_law_is_named_only_if_it_is_by_far_the_nearest() -> None:
-    """The score of a motion halfway between two laws names neither of them."""
+def test_a_motion_follows_a_law_only_if_that_law_is_by_far_the_nearest() -> None:
+    """A motion halfway between two laws follows neither of them."""
     one = benchmark.problem("law.which")
     motions = {"stronge": one.states, **one.laws}
     t = one.output_times[np.rint(one.times * 100).astype(int)]

@@ -23,8 +23,8 @@ UPHILL = Scene(0.7, 1.9, mass=3.0, inertia=2.0, slope=0.1, omega=-2.0, theta=1.5
 def test_the_exact_motion_satisfies_the_equations_and_the_jacobian_is_right(
     name: str, form: str
 ) -> None:
-    """F is no larger than the change that 8 ulps of each entry of y and y' can cause in it. This
-    covers the rounding errors of the motion and of F.
+    """The residual F is no larger than the change that 8 ulps of each entry of y and y' can cause.
+    This covers the rounding errors of the motion and of F.
 
     Central differences have an error of step^2/6 = 2e-11 times the third derivatives, which for the
     thin body are about (a/b)^4 times the Jacobian, and a rounding error of 1e-16/step.

@@ -37,9 +37,10 @@ def test_mujoco_reads_mjcf_as_intended() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.6])
 def test_mujoco_takes_rolling_resistance_as_a_lever_in_metres(friction: float) -> None:
-    """A rolling disc decelerates at delta g/(k^2 + R^2), to within 3 % because of the soft cone.
+    """With the lever delta, the rotation of a rolling disc slows at delta g/(k^2 + R^2), to within
+    3 % because of the soft cone.
 
-    On ground without friction only the couple acts, and the rotation decelerates at delta g/k^2. In
+    On ground without friction only the couple acts, and the rotation slows at delta g/k^2. In
     MuJoCo this is off by up to 60 %.
     """
     mujoco = pytest.importorskip("mujoco")
@@ -94,7 +95,7 @@ def test_bodies_fall_and_rest_correctly_in_each_engine(name: str) -> None:
         assert ends == pytest.approx([np.nan, 9.81], rel=1e-6, nan_ok=True)
 
 
-def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
+def test_stiff_contacts_reduce_the_error_of_mujoco() -> None:
     """The error of stiff contacts falls with the step. At 1 ms it is below a tenth of the error
     with MuJoCo's own contacts."""
     scene = Scene(2.0, 1.0, friction=1.0, theta=0.2, omega=3.2)

@@ -11,7 +11,6 @@ from rolling_ellipse.benchmark.adapters import engine
 
 
 def test_ids_are_accepted_in_place_of_problems() -> None:
-    """The functions `problem`, `run` and `score` accept an id. `run` also accepts a list of ids."""
     several = benchmark.run(exact, problems=["slide.slope", benchmark.problem("roll.rock")])
     assert [score.problem for score in several] == ["slide.slope", "roll.rock"]
     (alone,) = benchmark.run(exact, problems="hit.settle", tags="flight, restitution,spin,stiction")

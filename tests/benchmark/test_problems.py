@@ -85,7 +85,7 @@ def test_other_laws_of_restitution_match_the_known_answers() -> None:
 
 @each_problem
 def test_slightly_changed_problems_have_the_same_events(name: str) -> None:
-    """Each input changes by 1e-12 of its size, or of its scale if it is 0."""
+    """Each input changes by 1e-12 of its size, and a state that is 0 by 1e-12 of its scale."""
     data, rng = PROBLEMS[name], random.Random(33)
     scene, sizes = data["scene"], dict(zip(STATE, data["scales"], strict=True))
     follow = ["z", "z_dot"] * (Scene(**scene).initial_state.mode.name != "FLIGHT")
@@ -113,8 +113,8 @@ def test_the_files_are_small_and_share_one_format() -> None:
 
 
 def test_answers_follow_from_the_known_motions() -> None:
-    """An impact counts if the body has risen by more than 0.002 L since the impact before. The
-    bounces end at the last event."""
+    """An impact counts if the body has risen by more than 0.002 L since the previous impact.
+    The bounces end at the last event."""
     for name, data in PROBLEMS.items():
         answer, rows = data["answer"], np.array(data["states"])
         values = {column: rows[:, k] for k, column in enumerate(data["columns"])}

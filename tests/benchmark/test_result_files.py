@@ -32,7 +32,7 @@ def test_exact_answers_in_files_are_right_and_missing_times_are_counted(tmp_path
     assert len(scores.to_dataframe()) == 20
 
 
-def test_a_truncated_file_is_rejected_naming_its_last_row(tmp_path: Path) -> None:
+def test_the_last_row_of_a_truncated_file_is_named(tmp_path: Path) -> None:
     """A full disk can cut a file within a number, which leaves a shorter row or another number."""
     one = benchmark.problem("slide.stick")
     benchmark.export(tmp_path)
@@ -44,8 +44,8 @@ def test_a_truncated_file_is_rejected_naming_its_last_row(tmp_path: Path) -> Non
 
 
 def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
-    """Events are then inferred from the states. Their file has both x_dot and its synonym vx, of
-    which only the first is used."""
+    """Events are then inferred from the states. The file of states has both x_dot and its synonym
+    vx, of which only the first is used."""
     one = benchmark.problem("slide.stick")
     rows = np.column_stack([one.output_times, one.exact(one.output_times), one.output_times])
     header = "t,x,z,theta,x_dot,z_dot,omega,vx"
@@ -67,7 +67,8 @@ def test_the_second_of_two_rows_at_one_time_is_scored(tmp_path: Path) -> None:
 
 
 def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
-    """If a file, link, dangling link, folder or pipe has one of the names, nothing is written."""
+    """Nothing is written if a file, link, folder or pipe has a name to be written. Only result
+    files may be present."""
     mine, place = tmp_path / "mine", tmp_path / "place"
     for name in ("README.txt", "roll.rock.json", "roll.rock.csv", "hit.settle.sdf"):
         for make in (
@@ -79,7 +80,7 @@ def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
             mine.write_text("mine")
             make(place / name)
             if name.endswith(".csv") and (place / name).is_file():
-                benchmark.export(place)  # result files may be present
+                benchmark.export(place)
             else:
                 with pytest.raises(ValueError, match=f"folder must contain no other {name}, got"):
                     benchmark.export(place)

@@ -18,8 +18,8 @@ from rolling_ellipse.geometry import support_slope
 
 IDS = [one.id for one in benchmark.problems()]
 BOUNCES = {one.id for one in benchmark.problems() if "restitution" in one.tags}
-# A simulator fails if its error is above a millionth of the condition number. The changes below are
-# at least 1e-3 of one input, whose share of the condition number is above a thousandth.
+# A simulator fails if its error is above a millionth of the condition number. Changed inputs
+# below differ by at least 1e-3, and each has a share of the condition number above a thousandth.
 TOLERANCE = 1e-6
 WITH_SLIP = {
     "hit.drop_slip", "hit.drop_slip_e", "hit.settle", "law.which", "leave.slip_then_lift",
@@ -215,7 +215,7 @@ def test_a_ladder_of_steps_gives_an_order_and_a_trend() -> None:
         ((1e-4, 1e-6, 1e-5), "plateau"), ((1e-4, 1e-5, 5e-6), "yes"),
     ],
 )  # fmt: skip
-def test_a_trend_compares_the_last_error_with_the_first(
+def test_a_trend_compares_the_last_error_with_the_first_and_the_previous_one(
     errors: tuple[float, ...], trend: str
 ) -> None:
     of = dict(zip((4e-3, 2e-3, 1e-3), errors, strict=True))

@@ -59,7 +59,7 @@ def test_the_recipe_reports_a_wrong_step_and_saves_a_picture(
 
 
 @pytest.mark.parametrize(("old", "new"), [("", ""), ("normal) / k2\n", "normal) / 1.01 / k2\n")])
-def test_the_recipe_for_convergence_fails_if_the_limit_is_not_rigid(
+def test_the_recipe_for_convergence_fails_if_the_limit_is_wrong(
     tmp_path: Path, old: str, new: str
 ) -> None:
     """An error of 1 % in the inertia leaves an error that no stiffness removes."""
@@ -71,8 +71,8 @@ def test_the_recipe_for_convergence_fails_if_the_limit_is_not_rigid(
 def close(known: Any) -> Any:
     """Answers are of order 1 to 10, with condition numbers up to 20, as in `slide.resist`.
 
-    Inputs that are off by half an ulp change the answers by up to 20 * 1.1e-16. The tolerance is
-    twice that, since the computation also rounds.
+    Inputs that are off by half an ulp change the answers by up to 20 * 1.1e-16. The tolerance is a
+    little more than twice that, since the computation also rounds.
     """
     return pytest.approx(known, rel=5e-15, abs=5e-15)
 
@@ -123,7 +123,7 @@ def test_the_answers_of_the_disc_have_closed_forms(row: dict[str, Any]) -> None:
 
 
 def test_errors_fall_with_stiffness_at_the_stated_exponents() -> None:
-    """The next term of an error is smaller by a factor of B/sqrt(s), where s = stiffness/mass.
+    """The second term of an error is B/sqrt(s) times the first, where s = stiffness/mass.
 
     A contact needs a time of the order of 1/sqrt(s) to form. During this time speeds change by
     g/sqrt(s) and the body turns by omega/sqrt(s), so that B is of the order of g and at most 20.

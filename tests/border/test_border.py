@@ -34,7 +34,6 @@ def test_unaligned_arrays_are_copied_on_entry() -> None:
 
 
 def test_results_are_the_same_if_threads_cannot_be_started() -> None:
-    """The memory limit leaves room for the stacks of about 20 of the 200 threads."""
     code = """
         import resource
         import numpy as np

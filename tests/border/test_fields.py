@@ -93,7 +93,6 @@ def test_a_scene_keeps_its_values_through_every_interface(
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_every_value_of_a_scene_affects_the_motion(name: str) -> None:
-    """This shows that the core reads each number."""
     one, other = (rl.simulate(scene, TIMES, model="contact") for scene in (START, changed(name)))
     assert any(getattr(one, each).tobytes() != getattr(other, each).tobytes() for each in STATE)
 

@@ -36,7 +36,7 @@ def test_the_fuzzer_draws_every_public_argument() -> None:
     assert names <= {*NUMBERS, *OTHERS}
 
 
-def test_a_case_is_reproducible() -> None:
+def test_the_same_seed_draws_the_same_cases() -> None:
     from fuzz_api import Hunt
 
     drawn: list[list[list[str]]] = []
@@ -54,7 +54,7 @@ def test_a_case_is_reproducible() -> None:
 
 
 def test_a_failing_case_is_shrunk(capfd: pytest.CaptureFixture[str]) -> None:
-    """Here every call of simulate with restitution=1.0 is a finding. Only one is printed."""
+    """Here every call of simulate with restitution=1.0 is a finding. Only one is kept."""
     from fuzz.process import Finding
     from fuzz_api import Hunt
 

@@ -74,9 +74,9 @@ BLOWS = {"jx": within(-3, 3), "jz": within(-9, 0), "dx": within(-1, 1), "dz": wi
 ACCELERATED = ("eq_39", "lambda4_numerator", "eq_40", "complete_f", "eq_41", "eq_42", "multipliers")
 FIRST = np.linspace(0, 9, 7)
 CALLS: dict[str, Call] = {
-    # times of one motion share a table, so that single times agree only to within rounding
     "flow": Call(rl.flow, {"t": within(-2, 9), **BODY, **START, "gyration2": within(0.2, 2),
                            "gravity": within(1.6, 9.8)}),
+    # times of one motion share a table, so that single times agree only to within rounding
     "flow: times": Call(lambda t: rl.flow(t, **AXES, theta=0.1, omega=3.0), {"t": TIMES}, False),
     "flow: slope": Call(rl.flow, {"t": within(0, 5), **BODY, **START, "slope": within(-0.4, 0.4)}),
     "flow_jacobian": Call(

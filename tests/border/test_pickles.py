@@ -174,7 +174,7 @@ def lines_of(picture: Any) -> list[Any]:
 
 
 @pytest.mark.parametrize("draw", PICTURES, ids=lambda draw: draw.__name__)
-def test_pictures_pickle_like_figures(draw: Callable[..., Any]) -> None:
+def test_pickled_or_copied_pictures_keep_their_curves(draw: Callable[..., Any]) -> None:
     picture = draw(MOTIONS["contact"]())
     pyplot.close("all")
     for copied in (COPIES["protocol 0"], COPIES["protocol 5"], copy.copy):

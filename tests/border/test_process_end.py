@@ -99,7 +99,7 @@ raise SystemExit(code)
 """
 
 
-def test_a_fork_does_not_wait_for_a_figure_being_drawn_in_another_thread() -> None:
+def test_a_forked_child_does_not_wait_for_a_figure_drawn_in_another_thread() -> None:
     assert run(FORK).returncode == 0
 
 

@@ -100,7 +100,7 @@ def refusal(call: Callable[[], Any]) -> str:
 
 
 def test_concurrent_mixed_calls_equal_single_threaded_ones_bit_for_bit() -> None:
-    """Each thread makes all calls in its own random order: 8000 calls in total."""
+    """Each of eight threads makes 1000 of these calls in its own random order."""
     alone = {(kind, place): call(place) for kind, call in KINDS.items() for place in range(PLACES)}
 
     def work(thread: int) -> None:
@@ -136,7 +136,7 @@ LATE: dict[str, Callable[[], Any]] = {
 
 @pytest.mark.parametrize("make", LATE.values(), ids=LATE)
 def test_lazily_computed_properties_are_the_same_in_all_threads(make: Callable[[], Any]) -> None:
-    """Eight threads read the properties of a new object at the same time, each in its own order."""
+    """Eight threads read the properties of a new object at once, in rotated orders."""
 
     def comparable(value: Any) -> Any:
         """The value itself, or the class name for an object of the core, which has no fields."""

@@ -91,7 +91,7 @@ def require_chained(scene: Scene, blows: Blows) -> Trajectory:
     assert numbers(event.state_after, names) == numbers(again.initial_state, names)
     ulps = 2 * np.spacing(SPAN)
     assert abs(motion.t_end - (t + after.t_end)) <= ulps and motion.status is after.status
-    alike = min(len(rest), len(after.events))  # one motion may end just before its last event
+    alike = min(len(rest), len(after.events))  # one motion may lack the other's last event
     assert all(SPAN - each.t <= ulps for each in rest[alike:])
     assert all(SPAN - t - each.t <= ulps for each in after.events[alike:])
     for one, other in zip(rest, after.events, strict=False):
@@ -197,7 +197,7 @@ def test_a_blow_at_the_start_follows_the_blow_of_the_scene() -> None:
     assert motion.omega[0] == pytest.approx(both.initial_state.omega, rel=4 * EPS)
 
 
-def test_a_blow_in_the_air_changes_only_the_flight() -> None:
+def test_a_blow_in_the_air_causes_no_reaction_of_the_ground() -> None:
     scene = Scene(2.0, 1.0, z=3.0, restitution=0.5)
     motion = rl.simulate(scene, [0.0, 0.1, 1.0], blows=[(0.1, Impulse(jx=2.0, dz=0.5))])
     blow, impact, *_ = motion.events

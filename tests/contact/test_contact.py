@@ -246,7 +246,7 @@ def test_a_slip_may_end_just_before_the_body_would_jam(
 @pytest.mark.parametrize("slope", [0.0, 0.02])
 def test_short_slips_are_detected(slope: float, short: float) -> None:
     """The friction is below the largest |F|/N of rolling by a fraction `short`. The duration of the
-    slip is proportional to the square root of that fraction, down to microseconds."""
+    slip is proportional to the square root of that fraction, down to 35 microseconds."""
     rolling = Scene(2.0, 1.0, omega=3.2, slope=slope)
     times = np.linspace(0, 0.9, 200_001)
     needed = simulate(rolling, times, model="contact").friction_needed
@@ -296,8 +296,8 @@ INDETERMINATE = Scene(2.0, 1.0, theta=0.988, omega=6.0, friction=2.0, x_dot=11.5
 
 
 def test_neither_of_two_possible_motions_is_chosen() -> None:
-    """If Gnn < mu s Gnt and c < 0, the body flies off, or N = c/B > 0 keeps it sliding; both
-    motions obey Newton's and Coulomb's laws."""
+    """If B = Gnn - mu s Gnt < 0 and c < 0, the body flies off, or N = c/B > 0 keeps it sliding.
+    Both motions obey Newton's and Coulomb's laws."""
     start = INDETERMINATE.initial_state
     contact = response(INDETERMINATE, start)
     at = support(start.theta, 2.0, 1.0)
@@ -404,7 +404,7 @@ STARTS = [
 
 
 @pytest.mark.parametrize(("scene", "mode", "reason"), STARTS)
-def test_starts_that_look_like_rolling_get_their_true_mode(
+def test_starts_without_slip_get_their_true_mode_and_reason(
     scene: Scene, mode: Mode, reason: str
 ) -> None:
     assert scene.initial_state.mode is mode and reason in scene.initial_state.reason
@@ -449,7 +449,7 @@ def test_whole_half_turns_of_the_angle_do_not_change_the_motion(theta: float, om
 
 
 @pytest.mark.parametrize("omega", [-1e-88, -1e-100, -1e-150, 1e-200, -5e-324])
-def test_a_tiny_speed_on_a_tip_lets_the_body_roll_or_rest(omega: float) -> None:
+def test_a_body_on_its_tip_with_a_tiny_speed_can_be_simulated(omega: float) -> None:
     """The body rolls if the rounded angle of the tip lets it fall, or rests if its speed vanishes
     in the units of the body. The search for the end of rolling always stops."""
     thin = Scene(6.1e-13, 6.05e-14, theta=math.pi / 2, omega=omega, friction=0.89, gravity=1.0)
@@ -477,7 +477,7 @@ def test_a_flight_too_fast_for_doubles_is_reported() -> None:
 def test_infinite_friction_acts_the_same_at_and_near_the_flat_position(
     theta: float, omega: float
 ) -> None:
-    """A slide at this angle would end at theta/100, and its friction, c/Gtn, would overflow."""
+    """A power series of a slide at such an angle would contain powers of 1/theta that overflow."""
     flat = Scene(2.0, 1.0, theta=0.0, omega=omega, friction=math.inf, x_dot=0.0)
     expected, beside = (
         simulate(scene, 10 / abs(omega), model="contact", max_events=20)

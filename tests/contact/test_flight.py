@@ -159,7 +159,7 @@ def test_a_downward_blow_leaves_no_velocity_into_the_ground(
 
 
 @pytest.mark.parametrize("omega", [1.0, 10.0])
-def test_small_hops_of_a_turning_circle_are_exact_to_a_few_ulp(omega: float) -> None:
+def test_small_hops_of_a_turning_circle_end_at_the_exact_time_to_14_digits(omega: float) -> None:
     """A circle's h is its radius, rounded up or down; the hops are far lower than that rounding."""
     scene = Scene(1.0, 1.0, z=1.5, omega=omega, x_dot=1.0, friction=0.0, restitution=0.6)
     events = simulate(scene, 3.0).events
@@ -188,7 +188,7 @@ def test_a_body_spinning_too_fast_for_the_resolution_of_time_still_lands(
 @pytest.mark.parametrize("strength", [1e-3, 1e-6, 1e-9])
 def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) -> None:
     """The speed off the ground comes from the blow alone, without a difference of velocities up to
-    1e9 times as large. The reference has 40 digits. Speed and time take ten operations."""
+    1e9 times as large. The reference has 40 digits. The time takes ten operations."""
     blow = Impulse(jx=0.3 * strength, jz=strength, dx=0.2, dz=0.4)
     scene = Scene(2.0, 1.3, theta=0.7, omega=1.1, friction=0.4, impulse=blow)
     landing = simulate(scene, 1.0, model="contact").events[0]

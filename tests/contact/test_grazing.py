@@ -1,4 +1,4 @@
-"""A body in contact that is weightless to within rounding neither takes off nor sinks.
+"""A body that is weightless on its tip, to within rounding, neither takes off nor sinks.
 
 The free acceleration into the ground, c = g cos(alpha) + h'' omega^2, is least on the tip. A body
 that spins there with omega^2 = g cos(alpha)/|h''| is free for an instant, and pressed down before
@@ -60,7 +60,7 @@ def test_a_weightless_tip_stays_on_frictionless_ground(
 def test_a_weightless_tip_stays_on_rough_ground(
     a: float, b: float, friction: float, ulps: int
 ) -> None:
-    """The body slips or rolls on from the tip, and no event follows another too soon to resolve."""
+    """The body slips or rolls on from the tip, with at most three events."""
     start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
     scene = Scene(a, b, friction=friction, theta=tip(a, b), omega=start)
     moving = simulate(scene, np.linspace(0.0, 0.5 / start, 200), model="contact")

@@ -13,7 +13,7 @@ from oracles.numbers import EPS
 from oracles.rolling import forces, motion
 from rolling_ellipse import Mode, Scene, Status, simulate
 
-PLACES = [  # theta, omega: rising, sinking, at rest, turning back at once, starting near the tip
+PLACES = [  # theta, omega: rising, sinking, at rest, turning back, near the tip, nearly flat
     (0.4, 1.0), (-0.4, 1.0), (0.4, 0.0), (-0.7, -1e-6), (0.2, 1e-9), (math.pi / 2, 0.1),
     (math.pi / 2 - 1e-9, -0.5), (1e-10, -5e-5),
 ]  # fmt: skip
@@ -96,7 +96,9 @@ def test_a_barely_rocking_body_is_held_by_friction(swing: float, ulps: int) -> N
     ],
     ids=["circle", "slope", "subnormal friction", "far from a metre"],
 )  # fmt: skip
-def test_subnormal_numbers_and_extreme_units_do_not_change_the_mode(scene: Scene) -> None:
+def test_motions_with_extreme_numbers_start_in_the_mode_of_their_initial_state(
+    scene: Scene,
+) -> None:
     moving = simulate(scene, [0.0], model="contact", max_events=12)
     assert moving.status is Status.COMPLETED
     assert moving.mode[0] == scene.initial_state.mode

@@ -89,7 +89,7 @@ def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
         (answer,) = answers
         assert Mode(motion.mode[0]) is answer.mode
         taken[answer.mode] += 1
-        # Terms of the equations cancel where B or M is small; both are at least 1e-4 here
+        # Terms of the equations cancel if their determinant is small; it is at least 1e-4 here
         size = G + abs(answer.normal) + abs(answer.friction) + abs(answer.spin_up) * max(a, b)
         found = motion.normal_force[0], motion.friction_force[0]
         assert found == pytest.approx((answer.normal, answer.friction), abs=1e-9 * size)
@@ -104,7 +104,8 @@ def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
 def test_resistance_alone_can_jam_a_body_of_small_inertia(
     friction: float, lever: float, theta: float, inertia: float | None
 ) -> None:
-    """The body jams if k^2 + h'(h' - s mu h + s' delta) <= 0. For mu = 0 this needs delta > 2 k."""
+    """The body jams if k^2 + h'(h' - s mu h + s' delta) <= 0, where s and s' are the signs of slip
+    and rotation. For mu = 0 this needs delta > 2 k."""
     scene = Scene(
         2.0, 1.0, theta=theta, omega=1.0 if friction == 0 else -1.0, friction=friction,
         x_dot=0.0 if friction == 0 else 5.0, inertia=inertia, rolling_resistance=lever,
@@ -157,7 +158,7 @@ def test_energy_never_grows_and_a_rocking_body_comes_to_rest_at_an_angle() -> No
 
 
 def test_a_small_lever_changes_the_motion_in_proportion() -> None:
-    """The difference from the exact flow is linear in the lever: halving it halves the change."""
+    """The change from the motion without resistance halves if the lever is halved."""
     free = simulate(ROCKING.replace(rolling_resistance=0.0), [3.0]).theta[0]
     change = [
         simulate(ROCKING.replace(rolling_resistance=lever), [3.0]).theta[0] - free

@@ -182,7 +182,7 @@ class Given(SimpleNamespace):
 
 @cache
 def least_rms(seed: int | None, gyration2: float) -> float:
-    """Least root mean square of the errors over e and the angle of friction."""
+    """Root mean square error, minimised over e and the angle of friction."""
     given: Any = Given("8.4", seed, gyration2=gyration2)
 
     def error(numbers: Any) -> float:

@@ -50,8 +50,8 @@ def test_the_marks_name_the_usual_mistakes_of_the_teachers_page() -> None:
         assert course.mark(number, float(wrong)).mistake not in ("none", "other"), (number, wrong)
 
 
-def test_friction_behind_the_tip_reverses_at_the_speed_that_sheet_3_states() -> None:
-    """Just behind the tip the sign of F = m (h omega_dot + h' omega^2) changes at that speed."""
+def test_friction_past_the_tip_reverses_at_the_speed_that_sheet_3_states() -> None:
+    """Just past the tip the sign of F = m (h omega_dot + h' omega^2) changes at that speed."""
     text = (FOLDER / "03_normal_and_friction_force.md").read_text(encoding="utf-8")
     shown = re.search(r"body ([\d.]+) rad/s \(([\d.]+) rad/s when flat\)", text)
     body: Any = Given("4.1")
@@ -97,7 +97,8 @@ def test_the_example_of_sheet_7_is_right() -> None:
 
 
 def test_the_gap_of_sheet_7_closes_no_faster_than_stated() -> None:
-    """The slope of h is at most a - b. Ten steps of gap / c are enough to reach the contact."""
+    """The slope of h is at most a - b. Ten steps of gap/c, where c bounds the closing
+    speed, reach the contact."""
     fall: Any = Given("7.2")
     assert np.max(np.abs(fall.at(np.linspace(0.0, math.pi, 3143))[1])) <= fall.a - fall.b
     latest = math.sqrt(2 * (fall.z - fall.b) / fall.gravity)

@@ -1,4 +1,4 @@
-"""A seed gives each student the same tasks with other numbers, and answers are marked correctly."""
+"""Each seed gives the same tasks with other numbers, and their answers are marked correctly."""
 
 import math
 import re
@@ -18,7 +18,8 @@ SLOW = ("3.5", "6.4", "8.4", "8.5")  # slow to compute; test_course.py tests the
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_answers_are_marked_for_the_numbers_of_a_seed(seed: int) -> None:
-    """Right answers have the printed sign and get all points. A wrong sign costs half of them."""
+    """Right answers have the sign of the printed ones. A wrong sign costs half of the points,
+    rounded down, but at least one."""
     for number, task in tasks_of(seed).items():
         if number in SLOW or (number in FILMED and seed != SEEDS[1]):
             continue
@@ -62,7 +63,7 @@ def test_numbers_of_a_seed_stay_near_the_printed_ones_and_keep_equalities() -> N
         assert equal[0] and sum(equal[1:]) < 5, number  # three digits may be equal by chance
 
 
-def test_the_slip_in_task_7_4_ends_during_the_impact_for_each_seed() -> None:
+def test_the_slip_in_task_7_4_ends_during_the_impact() -> None:
     """The slip ends before the impact does, and then friction is large enough for sticking."""
     for seed in range(50):
         hit = Given("7.4", seed).landed()
@@ -74,7 +75,7 @@ def test_the_slip_in_task_7_4_ends_during_the_impact_for_each_seed() -> None:
         assert abs(along) < hit.friction * up
 
 
-def test_an_impact_that_sticks_does_not_fit_the_film_of_any_seed() -> None:
+def test_an_impact_that_sticks_does_not_fit_the_film() -> None:
     """With a friction of 10, which prevents slip, chi^2 is larger by more than 16, four standard
     deviations. Therefore the film determines friction."""
     for seed in range(0, 200, 8):

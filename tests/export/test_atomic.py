@@ -58,7 +58,7 @@ def test_a_relative_path_keeps_its_folder(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.chdir(tmp_path)
     with replacing("motion.npz") as new:
         new.write_bytes(NEW)
-        monkeypatch.chdir("/")  # a relative path keeps its meaning
+        monkeypatch.chdir("/")
     assert names(tmp_path) == ["motion.npz"]
 
 
@@ -208,7 +208,7 @@ def test_devices_and_pipes_are_written_not_replaced(tmp_path: Path) -> None:
         ("x" * 300, OSError),
     ],
 )
-def test_unwritable_paths_are_rejected_by_name(
+def test_unwritable_paths_are_named_in_the_error(
     name: str, kind: type[OSError], old: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The error of `open` is raised before any work, and names the given path."""

@@ -23,7 +23,7 @@ def test_examples_equal_their_sources(tmp_path: Path) -> None:
         ours, theirs = (nbformat.read(p, 4).cells for p in (path, ROOT / "notebooks" / path.name))
         assert [cell.source for cell in ours] == [cell.source for cell in theirs]
         assert not any(cell.get("outputs") or cell.get("execution_count") for cell in ours)
-    assert rl.examples(tmp_path / "new") == []  # there is nothing left to write
+    assert rl.examples(tmp_path / "new") == []
     assert Path(str(_core.__file__)).with_name("examples.zip").stat().st_size <= 500_000
 
 

@@ -127,7 +127,9 @@ WRONG_VALUES: dict[str, Any] = {
 
 
 @each_model
-def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) -> None:
+def test_wrong_values_are_rejected_or_saved_unchanged(
+    name: str, contents: Contents, path: Path
+) -> None:
     """Each value in the JSON is replaced by each wrong value. If accepted, it is saved
     unchanged."""
     about, arrays = taken_apart(contents[name])

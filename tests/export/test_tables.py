@@ -64,7 +64,7 @@ def test_no_array_of_a_trajectory_is_missing_from_the_tables(motion: rl.Trajecto
 
 def test_the_stated_units_match_the_values() -> None:
     """In units scaled by powers of two, each quantity changes by the factor of its unit."""
-    factors = (2, 1, 3)  # exponents of two: the scaled motion has the same digits
+    factors = (2, 1, 3)  # exponents of two, so that scaling rounds nothing
     small = rl.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
     large = scene_in_other_units(small, factors)
     times = np.linspace(0.0, 2.0, 21)

@@ -73,7 +73,7 @@ def test_a_film_in_millimetres_with_outliers_is_fitted() -> None:
     true = {"scale": 1000.0, "ground": 30.0, "clock": 0.01, "omega": 12.0, "friction": 0.18}
     off = {name: (fit.values[name] - value) / fit.errors[name] for name, value in true.items()}
     assert all(abs(each) < 4 for each in off.values()) and "not fit" not in fit.message
-    assert "x 0." in fit.message and " mm" in fit.message  # in lengths of the scene
+    assert "x 0." in fit.message and " mm" in fit.message  # lengths in the scene, not in the film
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from judge_films import EXAMPLE, FREE, GUESS, KINDS, SIGMA, TIMES, WRONG, noisy
 from rolling_ellipse import Fit, Scene, fit_motion, simulate
-from rolling_ellipse._verbs.films.judgement import neighbours  # fits show it only on average
+from rolling_ellipse._verbs.films.judgement import neighbours  # its effect on fits is statistical
 
 TRACKS = ("x", "z", "theta")
 

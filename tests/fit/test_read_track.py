@@ -1,4 +1,4 @@
-"""Tables of all common trackers become tracks in metres, radians and seconds."""
+"""Tables of common trackers become tracks in metres, radians and seconds."""
 
 import math
 from pathlib import Path
@@ -33,7 +33,7 @@ def written(path: Path, head: str, delimiter: str, decimal: str) -> Path:
         ("# 60 frames a second\nt,x,y,q", ",", "."),
     ],
 )
-def test_tables_of_all_kinds_give_the_same_track(
+def test_tables_in_several_formats_give_the_same_track(
     head: str, delimiter: str, decimal: str, tmp_path: Path
 ) -> None:
     path = written(tmp_path / "track.txt", head, delimiter, decimal)
@@ -67,7 +67,7 @@ def test_units_and_directions_are_converted_as_stated() -> None:
 
 @pytest.mark.parametrize(("period", "rate"), [(math.pi, 30.0), (2 * math.pi, 40.0)])
 def test_angles_are_unwrapped_at_the_ends_of_their_range(period: float, rate: float) -> None:
-    """Angles of fitted ellipses cover half a turn, and those of points a whole turn. One is NaN."""
+    """Angles of fitted ellipses cover half a turn, and those of points a whole turn."""
     true = rate * T - 1.0
     wrapped = np.mod(true, period)
     wrapped[2] = math.nan

@@ -51,7 +51,7 @@ def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
     turned = abs(psi - theta)
     sine, cosine = abs(mp.sin(psi - theta)), abs(mp.cos(psi - theta))
     polar_rate = abs(along(positions, q, [0, 0, 0, 1, 0], a, b)[1])
-    lead_rate = 1 + along(positions, q, [0, 0, -1, 0, 0], a, b)[2]  # at least 1 + d psi / d theta
+    lead_rate = 1 + along(positions, q, [0, 0, -1, 0, 0], a, b)[2]  # 1 + d psi / d theta
     return [
         *position_terms(q, a, b),
         x_dot + abs(r) * (cosine + sine * turned) * omega,

@@ -122,10 +122,10 @@ def test_stronge_and_poisson_create_no_energy(law: Any, shape: tuple[float, floa
             assert np.all(speed(found, k2) <= speed(state[1:], k2) * (1 + 100 * EPS))
 
 
-def test_a_light_thin_fast_turning_body_conserves_energy() -> None:
+def test_a_thin_fast_turning_body_of_small_inertia_gains_no_energy() -> None:
     """h' omega can exceed 100 times z_dot, so no velocity may be a difference of two such terms.
 
-    Three velocities have about ten roundings each, and the energy has twice as many.
+    The three velocities have about ten roundings each, and the energy has twice as many.
     """
     random = np.random.default_rng(6)
     body: dict[str, Any] = {"a": 1.0, "b": 0.05, "gyration2": 1e-4}
@@ -288,7 +288,7 @@ def thrown(seed: int, count: int, law: Any = "stronge", top: float = 0.25) -> tu
 
 @pytest.mark.parametrize("law", LAWS)
 def test_the_fit_is_as_good_as_the_best_of_a_fine_grid(law: Any) -> None:
-    """The median has many local minima, which a search from the best of a coarse grid misses."""
+    """The median has many local minima. From a coarse grid, a search may miss the lowest."""
     angle = np.linspace(0, math.pi / 2, 121)
     e: Any = np.linspace(0, 1, 121)
     mu: Any = np.append(np.tan(angle[:-1]), math.inf)
@@ -343,8 +343,8 @@ def test_neither_order_nor_mirroring_changes_the_fit(minimise: Any) -> None:
 
 
 def test_undetermined_coefficients_have_infinite_errors() -> None:
-    """If all impacts stick, infinite friction fits as well. Errors are estimated from halves of the
-    series, which must have at least 20 impacts."""
+    """If all impacts stick, infinite friction fits equally well. Errors are estimated from halves
+    of the series, which must have at least 20 impacts."""
     state = approaching(200, 9)
     seen = after(state, "stronge", 0.3, 0.6) + np.random.default_rng(9).normal(0, 0.05, (3, 200))
     fitted = impacts.fit(list(state), list(seen), **BODY)

@@ -21,7 +21,7 @@ def noisy(law: Any, count: int, noise: float, seed: int) -> tuple[Any, Any]:
 
 
 def squares(law: Any, before: Any, seen: Any, e: Any, angle: Any) -> Any:
-    """Sums of squares for arrays of coefficients."""
+    """Sums of squared errors for arrays of coefficients."""
     e, mu = np.asarray(e)[..., None], np.tan(angle)[..., None]
     moved = impacts.collide(*before, **BODY, friction=mu, restitution=e, law=law)
     return (speed(np.stack(moved) - seen[:, None, None]) ** 2).sum(axis=-1)
@@ -29,7 +29,7 @@ def squares(law: Any, before: Any, seen: Any, e: Any, angle: Any) -> Any:
 
 def density(total: Any, count: int, sigma: float | None) -> Any:
     """The logarithm of the likelihood. Without sigma it is, by definition, an integral over sigma
-    with the weight 1/sigma, evaluated with sigma = sqrt(S) s."""
+    with the weight 1/sigma, evaluated with sigma = sqrt(total) s."""
     if sigma is not None:
         return -total / (2 * sigma**2) - count * math.log(math.sqrt(2 * math.pi) * sigma)
     peak = 1 / math.sqrt(count)

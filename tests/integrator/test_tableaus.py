@@ -54,7 +54,7 @@ def trees(nodes: int) -> tuple[Tree, ...]:
 
 
 def forests(nodes: int, largest: int) -> Iterator[Tree]:
-    """Multisets of trees with a total number of nodes, none larger than `largest`."""
+    """Multisets of trees with the given total number of nodes, no tree larger than `largest`."""
     if nodes == 0:
         yield ()
         return

@@ -14,7 +14,7 @@ NAMED = [
     rl.scenes.circle, rl.scenes.thin, rl.scenes.slope, rl.scenes.slip, rl.scenes.jump,
     rl.scenes.drop, rl.scenes.bounce, rl.Scene(2.0, 1.0, friction=0.1, omega=3.0),
 ]  # fmt: skip
-# With these settings a simulation of rolling takes hours, and one of rest almost no time
+# With these settings a simulation of rolling takes minutes, and one of rest almost no time
 ENDLESS: Any = {"model": "rolling", "method": "rk4", "step": 1e-7, "max_steps": 2**31 - 1}
 
 
