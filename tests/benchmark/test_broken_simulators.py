@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import fields
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -228,6 +229,24 @@ def test_wrong_bounces_are_judged_wrong(change: Any, words: str) -> None:
     one = benchmark.problem("hit.settle")
     score = score_of(one, one.exact(one.output_times), events=change(every_impact(one, 22)))
     assert score.answer == "wrong" and words in score.reason, score
+
+
+def test_states_between_the_tabulated_times_are_judged_too() -> None:
+    def wild(one: Any, times: Any, setting: Any) -> Any:
+        states = one.exact(times)
+        states[~np.isin(times.round(9), one.times.round(9)), 0] += 1e6
+        return states
+
+    for score in benchmark.run(wild):
+        assert score.answer == "wrong" or score.problem == "law.which", score
+
+
+def test_a_simulator_that_works_in_place_cannot_change_a_problem() -> None:
+    one = benchmark.problem("hit.bounce")
+    arrays = [getattr(one, each.name) for each in fields(one)] + [*one.laws.values()]
+    arrays += [getattr(event, each.name) for event in one.events for each in fields(event)]
+    arrays = [each for each in arrays if isinstance(each, np.ndarray)]
+    assert len(arrays) > 20 and not any(each.flags.writeable for each in arrays)
 
 
 def test_the_disc_must_have_rolled_forty_metres() -> None:

@@ -87,6 +87,7 @@ def _rows() -> Iterator[Row]:
     yield from wrong(benchmark.run, {"mine": exact}, tolerance=[0.0, np.nan], tags=[["gpu"], "gpu"])
     yield from wrong(benchmark.run, {"mine": exact}, problems=["slide", ["roll.rock", "jam"], 3])
     yield from wrong(benchmark.run, {}, mine=[3, lambda one, t: t, sorted])
+    yield from wrong(benchmark.run, {"mine": exact}, ladder=["ab", 0.1, [0.1, -0.1], [np.inf]])
     yield from wrong(benchmark.score, {}, results=["no/such/folder", {"jam": STATES}])
     yield from wrong(benchmark.score, {"results": {}}, problems=["slide"], tags=["gpu"])
     yield from wrong(benchmark.run(exact, problems=STICK).order, {}, problem=["slide"])

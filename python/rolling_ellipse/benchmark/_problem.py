@@ -16,6 +16,7 @@ from .._ask.printing import printable
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene
 from .._core import EventKind, Mode, require_no_resistance
+from .._motion.samples import frozen
 from .._motion.trajectory import Trajectory
 from .._verbs.simulate import simulate
 from ._equations import FORMS, Dae, Ode, first_arc
@@ -285,21 +286,26 @@ def _read() -> dict[str, dict[str, Any]]:
 @cache
 def _made(name: str) -> Problem:
     data = _read()[name]
-    rows = np.array(data["states"])
+    rows = _fixed(data["states"])
     given: dict[str, Any] = data["scene"]
-    laws = {law: np.array(states)[:, 1:7] for law, states in data.get("laws", {}).items()}
+    laws = {law: _fixed(states)[:, 1:7] for law, states in data.get("laws", {}).items()}
     return Problem(
         **{key: data[key] for key in ("id", "title", "question", "scored", "answer")},
         tags=tuple(data["tags"]), scene=Scene(**given),
         t_end=float(data["t_end"]), horizon=float(data["horizon"]),
-        scales=np.array(data["scales"], dtype=float), times=rows[:, 0], states=rows[:, 1:7],
-        normal_force=rows[:, 7], friction_force=rows[:, 8], condition=np.array(data["condition"]),
+        scales=_fixed(data["scales"]), times=rows[:, 0], states=rows[:, 1:7],
+        normal_force=rows[:, 7], friction_force=rows[:, 8], condition=_fixed(data["condition"]),
         events=tuple(_event(one) for one in data["events"]), laws=laws,
     )  # fmt: skip
 
 
+def _fixed(values: Any) -> FloatArray:
+    """Return a read-only array, since problems are shared by all simulators."""
+    return frozen(np.array(values, dtype=float))
+
+
 def _event(data: dict[str, Any]) -> KnownEvent:
-    sides = np.array([data["before"], data["after"]], dtype=float)
+    sides = _fixed([data["before"], data["after"]])
     known = EventKind[data["kind"]], float(data["t"]), float(data["condition"])
     return KnownEvent(*known, sides[0, :6], sides[1, :6], sides[:, 6], sides[:, 7])
 
@@ -379,7 +385,7 @@ def gradients() -> list[Gradient]:
     ['friction', 'omega', 'restitution', 'theta', 'z']
     """
     return [
-        Gradient(name, row["wrt"], float(row["t"]), np.array(row["value"], dtype=float))
+        Gradient(name, row["wrt"], float(row["t"]), _fixed(row["value"]))
         for name, data in _read().items()
         for row in data.get("gradients", [])
     ]

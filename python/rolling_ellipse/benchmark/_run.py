@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from inspect import signature
 from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, choice, positive, shown
+from .._ask.check import FloatArray, choice, number, positive, shown
 from ._files import read_folder
 from ._problem import Problem, scored_ones
 from ._problem import problems as able_to
@@ -38,7 +39,7 @@ def run(
         Abilities of the simulator, as in `Problem`, such as "non-round,stiction"; problems that
         need other abilities count as "not supported".
     ladder : iterable of float
-        Settings, such as steps [s], from coarse to fine. Default: only None.
+        Settings, such as steps [s], from coarse to fine: numbers >= 0, or None. Default: only None.
     tolerance : float
         Largest error over condition number that passes.
 
@@ -49,9 +50,10 @@ def run(
     Raises
     ------
     ValueError
-        If a problem or a tag is unknown, or a result is malformed; the message names the problem.
+        If a problem or a tag is unknown, a setting is negative or not finite, or a result is
+        malformed; the message names the problem.
     TypeError
-        If `mine` takes other arguments, or a result is not numbers.
+        If `mine` takes other arguments, or a setting or a result is not numbers.
 
     Examples
     --------
@@ -67,7 +69,12 @@ def run(
     roll.rock. With smaller settings 1 become better.
     """
     require_simulator("mine", mine)
+    if not isinstance(ladder, Iterable):
+        raise TypeError(f"ladder must be settings, got {shown(ladder)}")
     tolerance, settings = positive("tolerance", tolerance), list(ladder)
+    for setting in settings:
+        if setting is not None and not 0 <= number("ladder", setting) < math.inf:
+            raise ValueError(f"ladder must be settings >= 0 or None, got {shown(setting)}")
     able = {one.id for one in able_to(tags)}
     scores = []
     for one in scored_ones(problems):
