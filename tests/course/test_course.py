@@ -100,6 +100,16 @@ def test_marks_state_which_impacts_were_used(
         monkeypatch.setenv("ROLLING_ELLIPSE_IMPACTS", str(tmp_path / "seen.csv"))
 
 
+def test_marks_follow_a_changed_file_of_impacts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows, names = np.vstack(course.measured_impacts()).T, ",".join(IMPACTS)
+    monkeypatch.setenv("ROLLING_ELLIPSE_IMPACTS", str(tmp_path / "seen.csv"))
+    for kept in (rows[::2], rows[1::2]):
+        np.savetxt(tmp_path / "seen.csv", kept, delimiter=",", header=names, comments="")
+        assert course.mark("8.1", TRUE["8.1"](Given("8.1")))
+
+
 @pytest.mark.parametrize("task", ["8.1", "8.2", "8.3", "8.4", "8.5", "8.6"])
 @pytest.mark.parametrize("kept", ["zero", "none", "unknown", "one"])
 def test_tables_of_impacts_without_an_answer_are_rejected(

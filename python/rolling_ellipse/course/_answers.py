@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
@@ -17,7 +16,7 @@ from .._ask.scene import Scene
 from .._ask.settings import Settings
 from .._verbs.flow import rolling_equation
 from .._verbs.simulate import simulate
-from ._tasks import DATA, FILE, Task, filmed, measured_impacts, scene_of
+from ._tasks import DATA, Task, filmed, measured_impacts, scene_of
 
 Formula = Callable[[Scene, dict[str, Any], str], Any]
 
@@ -53,8 +52,8 @@ def thresholds(of: Scene) -> dict[str, Any]:
 
 
 def _impacts(s: Scene, d: dict[str, Any], name: str) -> float:
-    (theta, *before), after = measured_impacts(d["seed"])
-    which, axes = (d["seed"], os.environ.get(FILE)), {"a": s.a, "b": s.b}
+    (theta, *before), after = series = measured_impacts(d["seed"])
+    which, axes = (d["seed"], content(series)), {"a": s.a, "b": s.b}
     h, lead = geometry.support(theta, **axes), geometry.support_slope(theta, **axes)
     x, z, turn = after - before
     moment, gap = -(h * x + lead * z), before[1] - lead * before[2]
@@ -75,8 +74,13 @@ def _impacts(s: Scene, d: dict[str, Any], name: str) -> float:
     return float(own if name == "inertia" else other) / s.gyration2
 
 
+def content(series: tuple[FloatArray, FloatArray]) -> bytes:
+    """Return impacts as a key for caches, since their file may change."""
+    return b"".join(each.tobytes() for each in series)
+
+
 @lru_cache(512)
-def _error(seed: int | None, measured: str | None, a: float, b: float, k2: float) -> float:
+def _error(seed: int | None, measured: bytes, a: float, b: float, k2: float) -> float:
     """Return the least rms error of a fit of Stronge's law; `measured` only keys the cache."""
     series: Any = measured_impacts(seed)
     return impacts.fit(*series, a=a, b=b, gyration2=k2, minimise="rms").rms_error

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .._ask.check import finite, number, shown
-from ._answers import answer, fitted
+from ._answers import answer, content, fitted
 from ._mistakes import usual
-from ._tasks import DATA, FILE, NUMBERS, checked, numbered, sheet_of
+from ._tasks import DATA, FILE, NUMBERS, checked, measured_impacts, numbered, sheet_of
 
 _ROUNDING = 1e-4  # assumed relative error of the data; rounding to four digits causes at most 5e-4
 _MOST = 5e-3  # largest relative tolerance, and largest excess over it of a nearly right answer
@@ -121,14 +121,14 @@ def mark(task: str, answer: float, *, seed: int | None = None) -> Mark:
 
 
 def key(task: str, seed: int | None) -> Key:
-    measured = os.environ.get(FILE) if task[0] == "8" and seed is None else None
-    return _key(task, seed, measured)
+    measured = task[0] == "8" and seed is None and FILE in os.environ
+    return _key(task, seed, content(measured_impacts()) if measured else None)
 
 
 @lru_cache(4096)
-def _key(task: str, seed: int | None, measured: str | None) -> Key:
+def _key(task: str, seed: int | None, measured: bytes | None) -> Key:
     of = numbered(seed)[task]
-    share, known = _known(task, seed, measured)
+    share, known = _known(task, seed)
     right = known[0][1]
     allowed = _allowed(right, share)
     nearly = "by hand" if of.source.startswith("film") else "per mille"
@@ -160,9 +160,7 @@ def _key(task: str, seed: int | None, measured: str | None) -> Key:
     return Key(ends, [marked(given) for given in (-math.inf, *middles, math.inf)])
 
 
-def _known(
-    task: str, seed: int | None, measured: str | None
-) -> tuple[float, list[tuple[tuple[str, ...], float]]]:
+def _known(task: str, seed: int | None) -> tuple[float, list[tuple[tuple[str, ...], float]]]:
     """Return the relative tolerance, and each known answer with the mistakes that lead to it.
 
     The tolerance excludes the half unit of the fourth digit that `_allowed` adds. The right answer
@@ -172,7 +170,7 @@ def _known(
     right = answer(of)
     if not 0 < abs(right) < math.inf:
         wanted = f"impacts with an answer to task {task}, which change the velocities"
-        raise ValueError(f"{FILE} must name a table of {wanted}, got {measured!r}")
+        raise ValueError(f"{FILE} must name a table of {wanted}, got {os.environ.get(FILE)!r}")
     known: list[tuple[tuple[str, ...], float]] = [((), right)]
     mistakes = usual(of)
     pairs = [(m, n) for m, n in combinations(mistakes, 2) if not (m.name == n.name and n.data)]

@@ -11,6 +11,7 @@ import numpy as np
 
 from .._ask.check import file_name, shown, whole_within
 from .._motion.export.atomic import write
+from .._motion.export.new_files import write_new
 from .._verbs.examples import packed
 from ._tasks import DATA, Task, checked, film, measured_impacts, numbered, sheet_of
 
@@ -53,7 +54,7 @@ class Sheet:
         Raises
         ------
         ValueError
-            If the name has another suffix.
+            If the name has another suffix, or the folder has other files with names of pictures.
         TypeError
             If `path` is not a path.
         OSError
@@ -67,8 +68,8 @@ class Sheet:
         place = Path(file_name("path", path))
         if place.suffix not in (".html", ".md"):
             raise ValueError(f"path must end in .html or .md, got {shown(str(place))}")
-        for name, picture in self.pictures.items() if place.suffix == ".md" else ():
-            write(place.with_name(name), picture)
+        if place.suffix == ".md":
+            write_new(place.parent, self.pictures)
         write(place, (self.markdown if place.suffix == ".md" else self.html).encode("utf-8"))
 
 
