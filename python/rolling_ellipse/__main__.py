@@ -23,7 +23,8 @@ from ._player import animate, explore
 _FPS = 25.0  # a frame rate that every film format supports
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
 # Names of arguments with which error messages start, and the options that replace them
-_OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time", "source": "--scene"}
+_OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time", "source": "--scene",
+            "path": "--save"}  # fmt: skip
 _INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes that shells report after SIGINT and SIGPIPE
 
 

@@ -301,6 +301,11 @@ def test_options_set_the_length_of_a_film(options: dict[str, Any], count: int, l
     assert animation.t[-1] == pytest.approx(last, abs=1e-14)
 
 
+def test_a_motion_shorter_than_a_frame_is_shown_in_slow_motion() -> None:
+    film = rl.animate(rl.simulate(rl.Scene(2e-9, 1e-9, theta=0.5), 1e-4), width=64)
+    assert film.speed < 0.01 and film.t.size > 2
+
+
 @pytest.mark.parametrize("speed", [0.25, 4.0])
 @pytest.mark.parametrize("fps", [25, 100 / 3, 50, 60])
 @pytest.mark.parametrize("suffix", [".gif", ".mp4", ".webm", ".html"])

@@ -383,6 +383,11 @@ def test_bad_input_gives_one_line_and_exit_code_2(
     assert len(err.splitlines()) == 1 and err.endswith("\n"), err
 
 
+def test_explore_names_the_option_for_a_wrong_suffix(tmp_path: Path) -> None:
+    answer = typed(tmp_path, "explore", "--save", "page.txt")
+    assert answer.code == 2 and "--save must end in .html" in answer.err
+
+
 def test_the_installed_command_runs_the_same_function(tmp_path: Path) -> None:
     (script,) = entry_points(group="console_scripts", name="rolling-ellipse")
     assert script.load() is command_line.run

@@ -28,8 +28,8 @@ def of_room(room: str) -> list[str]:
     """Public names that the package imports from a room (folder), according to `__init__.pyi`."""
     lines = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8")).body
     imports = [line for line in lines if isinstance(line, ast.ImportFrom)]
-    lines = [line for line in imports if (line.module or "").startswith(room)]
-    return [each.name for line in lines for each in line.names]
+    of = [line for line in imports if (line.module or "").startswith(room)]
+    return [each.name for line in of for each in line.names]
 
 
 PLOTS = [name for name in of_room("_pictures") if name.startswith("plot_")]

@@ -39,6 +39,7 @@ SOURCES: list[tuple[str, Any]] = [
         42, None, b"{}", "", "scene.json", "{", "[1]", '{"a":' * 50_000, f"{HEAD}, 1}}",
         f'{HEAD}, "x": {"1" * 5000}}}', f'{HEAD}, "mu": 0.3}}', f'{HEAD}, "t": 6}}',
         "#a=2&b=1&fricton=1", "#a=2&b=1&height=0&z=2")),
+    ("theta", "#a=2&b=1&theta=1_0"),
     ("version", '{"a": 2, "b": 1}'), ("a", '{"version": 1}'), ("b", '{"version": 1, "a": 2}'),
     *(("version", f'{{"version": {value}, "a": 2, "b": 1, "new": 3}}')
       for value in ("2", "0", "1.0", "true", "null", '"1"', "[1]")),
@@ -94,7 +95,7 @@ REFUSALS: list[Row] = [
     # scenes as text, and links to the live page with the names of Scene or with older names
     *((key, lambda _, source=source: Scene.from_json(source)) for key, source in SOURCES),
     ("source", from_a_file),
-    *wrong(ROLLING.to_link, {}, t=[*NOT_POSITIVE, "6"]),
+    *wrong(ROLLING.to_link, {}, t=[*NOT_POSITIVE, "6"], page=[None, 5, b"page"]),
     # bodies with rolling resistance
     *(("rolling_resistance", lambda _, verb=verb: verb(RESISTED)) for verb in (
         Scene.to_sdf, rl.period, rl.outcome, rl.required_friction,

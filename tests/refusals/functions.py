@@ -165,6 +165,8 @@ REFUSALS: list[Row] = [
     # the course
     *wrong(course.sheet, {"number": 1}, number=[0, 11, "1", 1.5, None], seed=SEEDS),
     *wrong(course.sheet(1).save, {}, path=["sheet.pdf", "", None]),
+    ("folder", lambda folder: (folder / "01.png").write_bytes(b"mine")
+     and course.sheet(1).save(folder / "sheet.md")),  # type: ignore[func-returns-value]
     *wrong(course.tasks, {}, seed=SEEDS), *wrong(course.film, {}, seed=SEEDS),
     *wrong(course.measured_impacts, {}, seed=SEEDS),
     *wrong(course.mark, {"task": "1.1", "answer": 1.0}, seed=SEEDS),
@@ -213,5 +215,7 @@ REFUSALS: list[Row] = [
               [0.0, 1e-320, 1.0, 2.0, 3.0, 4.0], np.arange(6) * 5e-324,
               [0.0, 1.0, 1.0 + 2e-16, 2.0, 3.0, 4.0]],
            x=[np.zeros(5), np.full(6, NAN), "x"], z=[[0.0]], theta=[[INF] * 6], scene=[None]),
+    ("theta", lambda _: rl.Trajectory.from_arrays(np.arange(6.0), theta=np.ones((1, 6)),
+                                                   scene=rl.scenes.rocking)),
     ("trajectory", lambda _: rl.Trajectory.from_arrays(**SAMPLES).when(theta=1.0)),
 ]  # fmt: skip

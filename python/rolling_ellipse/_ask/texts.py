@@ -61,6 +61,8 @@ def to_link(scene: Any, page: str | os.PathLike[str] = "", *, t: float | None = 
     ------
     ValueError
         If t is not positive and finite.
+    TypeError
+        If `page` is not text or a path.
 
     Examples
     --------
@@ -74,6 +76,8 @@ def to_link(scene: Any, page: str | os.PathLike[str] = "", *, t: float | None = 
 
     given = _given(scene)
     given |= given.pop("impulse", {}) | ({} if t is None else {"t": positive("t", t)})
+    if not isinstance(page, str | os.PathLike):
+        raise TypeError(f"page must be text or an os.PathLike, got {shown(page)}")
     return f"{str(page).partition('#')[0]}#{urlencode(given)}"
 
 
@@ -179,5 +183,5 @@ def _number(name: str, value: Any) -> Any:
 def _linked(name: str, text: str) -> Any:
     value: Any = text
     with suppress(ValueError):
-        value = float(text)
+        value = text if "_" in text else float(text)  # Python reads 1_0 as 10
     return _number(name, value)

@@ -77,7 +77,8 @@ def from_arrays(
     body, given = require_scene(scene), {"x": x, "z": z, "theta": theta}
     if x is None and z is None and theta is not None:
         axes = {"a": body.a, "b": body.b}
-        path = centre_path([body.theta, *finite("theta", theta).ravel()], **axes)
+        theta = vector("theta", finite("theta", theta))
+        path = centre_path([body.theta, *theta], **axes)
         given |= {"x": body.x + path[1:] - path[0], "z": support(theta, **axes)}
     held = [vector(name, finite(name, values), times.size) for name, values in given.items()]
     samples = _Samples(body, times, np.stack(held, axis=1))
