@@ -95,7 +95,7 @@ def to_a_folder(scenes: Any, t: float) -> None:
 
 
 def batches() -> dict[str, Case]:
-    """Motions that roll, motions that slip and jump, and throws with three events each."""
+    """Motions that roll, motions that slip and jump, and throws with about three events each."""
     rolls, slips = (
         [
             Scene(2.0, 1.0, friction=friction, omega=omega)

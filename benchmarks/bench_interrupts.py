@@ -7,7 +7,7 @@ table shows the median, the 95th percentile and the maximum of the time from the
 KeyboardInterrupt. A later call must give the same result as before, bit for bit. The exit code is 1
 if this result differs, or if a 95th percentile is more than 200 ms. In the notebook, tracebacks are
 cut to one line, since Jupyter takes longer to show source code. The last line of the table is the
-delay with source code, which does not affect the exit code. Run it on an otherwise idle machine.
+delay with source code, which does not affect the exit code. The machine should be otherwise idle.
 """
 
 import argparse

@@ -2,7 +2,7 @@
 
 examples.zip contains the notebooks, without outputs, and the tables of reference states, for
 `examples`; course.zip contains the sheets and their pictures, for `course.sheet`. CMake runs this
-script, with a Python that may lack all packages. The same sources give identical archives.
+script, with a Python that may have no packages. The same sources give identical archives.
 """
 
 import json

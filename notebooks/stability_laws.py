@@ -1,4 +1,4 @@
-"""Measurements of notebook 07, section by section; tests/stability asserts their laws.
+"""Measurements for notebook 07, section by section; tests/stability checks their laws.
 
 Each measurement runs one or a few short simulations and returns numbers, without judging them.
 """
@@ -150,7 +150,7 @@ GAINS = np.array([0.5, 1, 2, 5, 10, 20, 50, 100, 200])  # feedback gains [1/s]
 
 
 def fed_back(gain: float) -> tuple[float, float]:
-    """Return errors of position [m, rad] and phase [rad] after 100 half turns with equal gains."""
+    """Return the largest position residual [m, rad] and the phase error [rad] of 100 half turns."""
     end = 100 * half_turn(FED_BACK)
     how = kept_by("baumgarte", method="rk4", step=2.0**-9, baumgarte=(gain, gain))
     found = run(FED_BACK, np.linspace(0.1 * end, end, 200), **how)
@@ -186,8 +186,8 @@ STEP = 1 / 16  # step [s]: a power of two, so that the times of all steps are ex
 class Rhythm(NamedTuple):
     """A rocking motion in which a whole number of half swings takes a whole number of steps.
 
-    Samples at multiples of this time are at ends of steps, where the truncation error has the same
-    phase.
+    Samples at multiples of this time are at ends of steps, and the periodic part of the truncation
+    error is the same in all of them.
     """
 
     half_swings: int
@@ -355,11 +355,11 @@ REPORT_MASS = 10.0  # mass [kg]
 
 
 class Third(NamedTuple):
-    """lambda_3 of an exact state, from three formulas [N]."""
+    """lambda_3 of an exact state, from three formulas."""
 
-    printed: float  # from eq 39 of the report
-    complete: float  # from eq 39 with all the terms of its numerator
-    solved: float  # from the linear system of the four multipliers
+    printed: float  # from eq 39 of the report [N/m^3]
+    complete: float  # from eq 39 with all the terms of its numerator [N/m^3]
+    solved: float  # from the package, whose constraint f3 has another scale [N]
 
 
 def third(theta: float, a: float, b: float) -> Third:
@@ -450,7 +450,7 @@ class Pressed(NamedTuple):
     """Normal force and response of a sliding body, assuming that it stays in contact."""
 
     normal: Any  # N/m [m/s^2]
-    response: Any  # m B, so that N/m = load / (m B)
+    response: Any  # B of physics (50), so that N/m = load / response
     turn: Any  # omega_dot m/N [1/m]
     side: Any  # sign of the slip, -1 or 1
 
@@ -467,8 +467,8 @@ def pressed(theta: Any, omega: Any, x_dot: Any, mu: float) -> Pressed:
 def law_of_force(y: ArrayLike, mu: float, step: float = 1e-3, t_end: float = 0.4) -> Floats:
     """Return rows of t, N/m, omega and x_dot from the start y = (theta, omega, x_dot).
 
-    The Runge-Kutta steps ignore the sign of B, and stop when numbers overflow. The shape is
-    (steps, 4).
+    The Runge-Kutta steps ignore the sign of the response, and stop when numbers overflow. The shape
+    is (steps, 4).
     """
 
     def rates(y: Floats) -> Floats:
@@ -541,7 +541,7 @@ class Loose(NamedTuple):
     motion: Trajectory
     missed: Floats  # constraint errors at each sample, in long semi-axes and rad
     energy: Floats  # change of the energy at each sample, relative to the largest energy
-    phase: float  # largest error in the last ten seconds [rad]; at one time it may be 0
+    phase: float  # largest error of theta in the last ten seconds [rad]
     texts: list[str]  # texts of the warnings
 
 
@@ -579,7 +579,7 @@ def _acceleration(theta: Any, omega: Any) -> Any:
 
 
 def plain(power: int, number: Any) -> float:
-    """Return the rms error of the angles after SPAN with the textbook form of the classical method.
+    """Return the rms error of the angles after SPAN with the classical Runge-Kutta method.
 
     The steps are 2^-power, and the arithmetic has the type `number`.
     """

@@ -265,8 +265,8 @@ REST = Arc(ROLLING, held=True)
 
 
 class Series(NamedTuple):
-    """Taylor coefficients in time; forces are per unit mass. `stiffness` is B on arcs that
-    slide."""
+    """Taylor coefficients in time; forces are per unit mass, and `stiffness` is B in slides with
+    finite friction."""
 
     phi: list[Any]
     theta: list[Any]

@@ -81,11 +81,11 @@ RATE_STEP = 1e-8  # change of time / step, in the finite differences for rates
 UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not determine the answer
 KIND_LIMIT = 1e-4  # largest unit of an event's time / natural time; above it the kind is not fixed
 MOST_STEPS = 260  # maximum number of steps of the motion that plans a scene
-MOST_SECONDS = 60.0  # processor time for one scene [s]
+MOST_SECONDS = 60.0  # a scene counts as too slow after five times this [s]
 ON_GROUND = 1e-12  # z = h and x_dot = h omega within this relative difference
 SHORTEST = 1e-6  # shortest interval with samples / natural time; shorter hops are too low
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
-NEARBY = 12  # number of slightly changed scenes that distinguish a limit from a fault
+NEARBY = 12  # number of changed scenes, per size of change, that distinguish a limit from a fault
 NEARBY_INPUTS = (
     "a", "b", "gravity", "friction", "theta", "omega", "x_dot", "slope", "rolling_resistance"
 )  # fmt: skip
@@ -304,7 +304,7 @@ class Reference(NamedTuple):
     kinds: list[str]  # kinds of the events that the inputs determine
     times: list[Any]  # times of all events
     at_limit: str  # an input whose rounding changes the events, and the event, or ""
-    apart: float  # distance from a finer precision, in units
+    apart: float  # largest difference of two precisions, in units
 
 
 def natural(scene: Scene) -> tuple[float, float]:
@@ -366,7 +366,7 @@ def by_rounded_angle(scene: Scene, row: Row) -> dict[str, float]:
 
 
 def reference(case: Case, times: list[float], end: float, check: bool, level: int = 0) -> Reference:
-    """Return events, samples and their units, at a finer precision if this one is too coarse."""
+    """Return events, samples and their units, at a finer `level` of precision if necessary."""
     road, finer = ROADS[level : level + 2]
     exact = answer(case, finer, times, end)
     base = answer(case, road, times, end)
@@ -497,7 +497,7 @@ def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
 
 
 def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bool:
-    """Return whether a scene changed by a few roundings has the events that the package reports."""
+    """Return whether a scene changed by up to 64 roundings has the events of the package."""
     for most in (4, 64) * NEARBY:
         near = case
         v = case.scene._asdict()
@@ -776,7 +776,7 @@ def blow(rng: random.Random, v: Values) -> None:
 
 def tip(rng: random.Random, v: Values) -> None:
     """Draw a start on the tip, or one ulp away from it, often with hardly any spin."""
-    if v["a"] == v["b"] or rng.random() < 0.6:  # a body that rolls on over its flat side
+    if v["a"] == v["b"] or rng.random() < 0.6:  # thick enough to keep rolling over its flat side
         with_axes(v, v["b"] * rng.uniform(1.05, 3.0) ** sign(rng), v["b"])
     v["theta"] = rng.choice([-1, 1]) * math.pi / 2 if v["a"] > v["b"] else 0.0
     if rng.random() < 0.2:
@@ -848,7 +848,7 @@ def weightless(rng: random.Random, v: Values) -> None:
 
 
 def skips(rng: random.Random, v: Values) -> None:
-    """Draw many low hops without energy loss."""
+    """Draw a start of many low hops without energy loss."""
     v["restitution"] = 1.0
     if rng.random() < 0.5:
         weightless(rng, v)
@@ -886,7 +886,7 @@ def limits(rng: random.Random, v: Values) -> None:
 
 
 def needed_friction(v: Values) -> float:
-    """Return the largest |F|/N of rolling from rest on level ground."""
+    """Return |F|/N when a body starts to roll from rest on level ground."""
     h, lever, _ = support(v["a"], v["b"], v["theta"])
     disc = (v["a"] ** 2 + v["b"] ** 2) / 4
     k2 = disc if v["inertia"] is None else v["inertia"] / v["mass"]

@@ -2,7 +2,7 @@
 
     python reference/judge_films.py judged.jsonl --study right --films 300
 
-A film takes one to six seconds. A run continues an existing file, and each study has its own seeds.
+A fit takes one to six seconds. A run continues an existing file, and each study has its own seeds.
 `--films 0` only prints the results in the file. The studies:
 
 right    films of all kinds of motion with normal noise: how many are reported as wrong, and, if
@@ -12,9 +12,9 @@ resistance  films of bodies that rolling resistance brings to rest, every second
          camera, with given sigma: chi2, the errors of the parameters, and the time of a fit
 wrong    films that were changed and do not fit their scene: how many are reported as wrong, and for
          how many the message names the reading of the data that makes them fit
-example  the film of docs/film.md: cost of the minimum above the minimum reached from the true scene
-wild     the same film with 4 of 80 angles off by a quarter turn, fitted with "soft_l1" and
-         "cauchy" in turn
+example  the film of docs/film.md: cost of the fit minus that of a fit from the true scene
+wild     the same film with 4 of 80 angles off by a quarter turn, fitted alternately with "soft_l1"
+         and "cauchy"
 """
 
 import argparse

@@ -368,7 +368,7 @@ STUDIES = {"ends": study_ends, "events": study_events, "cut": study_cut}
 
 
 def report(records: list[Values]) -> None:
-    """Print the counts of the verdicts, and each wrong case."""
+    """Print the counts of the verdicts, and each case whose verdict is not in EXCUSED."""
     for study in STUDIES:
         tally, worst = defaultdict[str, Counter[str]](Counter), defaultdict[str, float](float)
         some = [row for row in records if row["study"] == study]

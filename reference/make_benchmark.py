@@ -50,11 +50,11 @@ STEPS = {60: 2.0, 20: 0.5, 12: 0.4, 8: 0.2, 6: 0.2, 5: 0.2, 4: 0.1, 3: 0.1, 2.5:
 LARGEST_CONDITION = 1000.0
 LEAST_GAP = 0.002  # height / L; a lower flight is not scored as a flight
 LAWS = ("stronge", "poisson", "newton")
-GRADIENT_ROADS = ((TABLE_ROAD, "1e-15"), (CHECK_ROAD, "1e-18"))  # and the changes of the input
+GRADIENT_ROADS = ((TABLE_ROAD, "1e-15"), (CHECK_ROAD, "1e-18"))  # precision and change of the input
 
 
 class Problem(NamedTuple):
-    """Title, question, scene and end of a problem; inputs of its gradients and their time."""
+    """Title, question, scene and end of a problem, and the inputs and time of its gradients."""
 
     title: str
     question: str

@@ -59,7 +59,7 @@ def inputs(fields: list[str]) -> list[str]:
 
 
 def is_flat_drop(scene: Scene) -> bool:
-    """Return whether a body drops on its flat side without spin or slip.
+    """Return whether a body drops at theta = 0 on level ground, without spin or slip.
 
     Any other angle would change the kind of motion.
     """

@@ -258,7 +258,7 @@ LEAST_SLOPE, MOST_SLOPE = 1e-3, 1.2
 
 
 def random_axes(rng: random.Random, kind: str) -> tuple[float, float]:
-    """Return random semi-axes of 5 cm to 20 m; two fifths of the bodies have a < b."""
+    """Return random semi-axes, the longer of 5 cm to 20 m; two fifths of the bodies have a < b."""
     longer = log_uniform(rng, 0.05, 20.0)
     if kind == "circle":
         return longer, longer

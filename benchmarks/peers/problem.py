@@ -5,8 +5,8 @@ With A = a^2, B = b^2, u = h^2 = B + (A - B) sin^2 and S = k^2 + A + B, the iner
 
     (S u - AB) theta'' = h u sigma - (A - B) sin cos (gamma h + AB omega^2 / u),  x' = h omega,
 
-where sigma and gamma are the components of gravity along the ground and into it. This is the
-notebook's equation with fewer products, which makes the peers faster: heyoka takes half the time.
+where sigma and gamma are the components of gravity along the ground and into it. This is physics
+(18) with fewer products, which makes the peers faster: heyoka takes half the time.
 Near the flat position, S u - AB magnifies rounding errors by A/(k^2 + B), which is less than 4 for
 a uniform body.
 """

@@ -1,4 +1,4 @@
-"""REBOUND's own interface for ODEs, solved by its Gragg-Bulirsch-Stoer integrator.
+"""REBOUND's interface for ODEs, with its Gragg-Bulirsch-Stoer integrator.
 
 The right-hand side is a C function compiled by numba, which reads the body from the field `ref` of
 the ODE.

@@ -27,7 +27,7 @@ QUICK = (
     "refusals/test_numbers.py",
     "export/test_atomic.py",
     "fit/test_fit_motion.py::test_rates_from_sampled_arrays_converge_at_fourth_order",
-    "sensitivity/test_sensitivity.py::test_derivatives_are_right_at_events_at_bounds_and_for_steps",
+    "sensitivity/test_sensitivity.py::test_derivatives_are_right_at_events_and_bounds_and_in_stepped_motions",
     "benchmark/test_scores.py",
     "course/test_course.py::test_marks_state_which_impacts_were_used",
     "impacts/test_laws_and_fit.py::test_stronge_and_poisson_create_no_energy",

@@ -41,7 +41,7 @@ HEAD = "t,x,z,theta,vx,vz,omega\n"
 def written(
     text: str | bytes, events: str = "", name: str = "slide.stick.csv"
 ) -> Callable[[Path], Any]:
-    """Score a file, and a file of events."""
+    """Score a file of states, and a file of events if `events` is not empty."""
 
     def call(folder: Path) -> Any:
         (folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())

@@ -94,7 +94,7 @@ def folder_called_gif(folder: Path) -> None:
 
 
 def long_film(folder: Path) -> None:
-    """Request a film with more frames than a player can have."""
+    """Request a film for which a player would need too many samples."""
     turning = rl.simulate(Scene(2.0, 1.0, omega=3.2), [0.0, 20_000.0])
     rl.animate(turning, folder / "roll.html", speed=20.0, fps=50.0, **FILM)
 

@@ -1,4 +1,4 @@
-"""Every refusal can be provoked, names its argument and shows the value.
+"""Every refusal names its argument and shows the value or its fault.
 
 No refusal is missing from the tables: every `raise` of the package must be in the traceback of some
 exception, and every text of the core in some message. Refusals that no call can reach are listed
@@ -168,7 +168,7 @@ def raising(path: Path) -> Iterator[tuple[int, int, str]]:
             yield node.lineno, node.end_lineno or node.lineno, text  # type: ignore[attr-defined]
 
 
-def test_every_raise_of_the_package_can_be_reached(all_provoked: list[Provoked]) -> None:
+def test_every_raise_not_listed_as_unreachable_is_reached(all_provoked: list[Provoked]) -> None:
     reached = {place for found in all_provoked for place in found.lines}
     missed = []
     total = 0
@@ -180,7 +180,7 @@ def test_every_raise_of_the_package_can_be_reached(all_provoked: list[Provoked])
                 continue
             if not any(text.find(known) >= 0 for known in UNREACHABLE):
                 missed.append(f"{name}:{first}: {' '.join(text.split())}")
-    assert total > 150  # fewer means that the patterns miss some
+    assert total > 150  # fewer means that `raising` misses some
     assert missed == [], "\n".join([f"{len(missed)} of {total}", *missed])
 
 
@@ -198,7 +198,7 @@ def thrown_texts(path: Path) -> Iterator[str]:
         yield from re.findall(r'"([^"]*)"', statement)
 
 
-def test_every_message_of_the_core_can_be_reached(all_provoked: list[Provoked]) -> None:
+def test_core_messages_not_listed_as_unreachable_are_reached(all_provoked: list[Provoked]) -> None:
     said = "\n".join(found.message for found in all_provoked)
     missed, total = [], 0
     for path in sorted((ROOT / "src").rglob("*.?pp")):
@@ -206,7 +206,7 @@ def test_every_message_of_the_core_can_be_reached(all_provoked: list[Provoked]) 
             total += 1
             if text not in said and text not in UNREACHABLE:
                 missed.append(f"{path.relative_to(ROOT)}: {text}")
-    assert total > 50  # fewer means that the patterns miss some
+    assert total > 50  # fewer means that the pattern misses some
     assert missed == [], "\n".join([f"{len(missed)} of {total}", *missed])
 
 

@@ -1,5 +1,5 @@
-"""All numerical arguments obey the same rules. Other values are refused, without a warning, in a
-message that names the argument."""
+"""All numerical arguments obey the same rules. Values that violate them are refused, without a
+warning, in a message that names the argument."""
 
 from collections import deque
 from collections.abc import Callable
@@ -112,13 +112,13 @@ def test_a_value_that_is_not_a_number_is_rejected(name: str, door: Door) -> None
 
 
 @names(SCALAR_DOORS)
-def test_an_array_of_one_element_is_rejected_as_a_number(name: str, door: Door) -> None:
+def test_an_array_of_one_element_does_not_count_as_a_number(name: str, door: Door) -> None:
     for value in ([2.0], (2.0,), np.array([2.0]), np.array([[2]]), np.ma.array([2.0])):
         refused(TypeError, name, "a number", door, value)
 
 
 @names(ARRAY_DOORS)
-def test_a_value_that_is_not_an_array_of_numbers_is_rejected(name: str, door: Door) -> None:
+def test_a_value_that_cannot_become_an_array_of_doubles_is_rejected(name: str, door: Door) -> None:
     for value in NO_ARRAYS:
         refused(TypeError, name, "a number or an array of numbers", door, value)
     refused(TypeError, name, "plain numbers", door, [np.ma.masked, 1.0])
@@ -155,7 +155,7 @@ def test_an_array_with_units_is_rejected(name: str, door: Door) -> None:
 
 
 @names(ARRAY_DOORS)
-def test_more_axes_than_numpy_can_broadcast_are_rejected(name: str, door: Door) -> None:
+def test_more_than_32_axes_are_rejected(name: str, door: Door) -> None:
     endless: list[Any] = []
     endless += [endless, endless]
     deep: list[Any] = []
@@ -241,7 +241,7 @@ def test_conversion_in_pieces_equals_conversion_at_once(value: Any, monkeypatch:
         assert max(taken, default=0) <= 16
 
 
-def test_a_message_formats_no_more_of_a_value_than_it_shows() -> None:
+def test_a_long_value_is_neither_formatted_nor_shown_in_full() -> None:
     asked = 0
 
     class Entry:

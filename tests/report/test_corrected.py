@@ -26,7 +26,7 @@ def corrected(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
 
 
 @pytest.mark.parametrize("options", [{}, {"consistent": "refuse"}, {"stabilization": "none"}])
-def test_a_rejected_start_names_every_violation(options: dict[str, Any]) -> None:
+def test_the_error_for_a_rejected_start_names_every_violation(options: dict[str, Any]) -> None:
     message = f"^q and q_dot must meet the constraints at t = 0, got {OWN_VIOLATIONS}$"
     with pytest.raises(ValueError, match=message):
         corrected(OWN_Q, OWN_RATES, 1.0, **options)
@@ -37,7 +37,7 @@ def test_a_rejected_start_names_every_violation(options: dict[str, Any]) -> None
 
 
 @pytest.mark.parametrize(("a", "theta"), [(2.0, -1.0), (100.0, -0.01)])
-def test_starts_within_rounding_of_the_coordinates_are_accepted(a: float, theta: float) -> None:
+def test_a_start_is_accepted_only_within_the_tolerance_of_f4(a: float, theta: float) -> None:
     """The tolerance of f4 = psi - psi(theta), where tan psi = a^2 tan theta, is twice the effect of
     16 ulps of psi and of theta and 8 eps of psi - theta, plus 16 eps (|theta| + |psi|). f4 itself
     is accurate to 1e-15."""
@@ -72,7 +72,7 @@ def test_a_start_is_projected_to_the_nearest_consistent_state() -> None:
     there, rates = motion.q[0], motion.q_dot[0]
 
     def distance2(change: Array) -> Array:
-        """Twice the kinetic energy per mass of a change of (x, z, theta); psi, r have no mass."""
+        """Twice the kinetic energy per mass of a change of (x, z, theta); psi and r have none."""
         found: Array = change[..., :3] ** 2 @ [1, 1, 1.25]
         return found
 
@@ -116,7 +116,7 @@ def test_the_reports_own_start_runs_as_given_with_a_warning() -> None:
     assert str(said.message) == f"the start violates constraints: {OWN_VIOLATIONS}"
     assert said.filename == __file__
     assert np.array_equal(motion.q[0], OWN_Q) and np.array_equal(motion.q_dot[0], OWN_RATES)
-    # the index-1 equations keep the rates of f1 ... f4, about 10, to 1e-8 per step for 100 steps
+    # the exact rates are constant; each of 100 steps may add 1e-8 of terms of about 10
     held = motion.constraint_residuals()
     law = np.outer(motion.t, [1.0, 0.0, -2.5])
     assert np.allclose(held.position, law, rtol=0, atol=1e-5)
@@ -175,7 +175,7 @@ def test_corrected_equations_equal_the_multipliers_model(method: Any, stabilizat
         assert np.array_equal(getattr(motion, name), getattr(same, name))
 
 
-def test_corrected_equations_have_their_own_defaults() -> None:
+def test_corrected_equations_use_given_settings_and_their_own_defaults() -> None:
     default = corrected(Q, Q_DOT, [1.0])
     assert (default.settings.method, default.settings.stabilization) == ("dop853", "projection")
     assert (default.settings.rtol, default.settings.atol) == (1e-8, 1e-10)

@@ -45,7 +45,7 @@ class Exact:
         self.x_ddot = self.h * self.alpha + self.slope * self.omega**2
         # lambda1, and lambda2 with the printed sign of g, for 10 kg
         self.friction, self.lifted = 10 * self.x_ddot, 10 * (self.normal - 2 * 9.81)
-        # the moment of these forces about G is 10 (a^2 + b^2)/4 times the acceleration in eq 35
+        # eq 35 without its term in lambda4
         self.couple = 10 * (a * a + b * b) / 4 * self.alpha + self.friction * self.h
         self.couple -= self.lifted * self.slope
         # sine and cosine of psi - theta
@@ -75,7 +75,7 @@ def numbers(where: str) -> report.Comparison:
 
 
 def close(value: float) -> Any:
-    """A value to within 100 ulps: each form has some ten operations, and none cancels tenfold."""
+    """A value to within 100 ulps: each form has some ten operations, and none loses a digit."""
     return pytest.approx(value, rel=100 * EPS, abs=0)
 
 
@@ -87,11 +87,11 @@ def zero(scale: float) -> Any:
 # --------------------------------------------------------------------------------------- the errata
 
 
-# For each row of the errata: printed value, right value, and size of the terms that cancel.
+# For rows of the errata: printed value, right value, and size of the terms that cancel.
 ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     # velocity of the geometric contact: x_dot + d/dt h' = (h + h'') omega = rho omega
     "eqs 9, 10, f1": lambda at: (at.rho * at.omega, 0, at.h * at.omega),
-    # r sin (psi_dot - theta_dot) cancels in the right row; the printed row keeps twice this term
+    # h' (psi_dot - theta_dot) cancels in the right row; the printed row is -2 times this term
     "eq 32, df2, row 2": lambda at: (
         -2 * at.slope * (at.psi_dot - at.omega), 0, at.slope * at.psi_dot,
     ),
@@ -104,7 +104,7 @@ ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     "eq 35, code a44": lambda at: (
         8 * (math.tan(ANGLE) ** 2 + 1) * at.omega, 0, 4 * (math.tan(ANGLE) ** 2 + 1) * at.omega,
     ),
-    # sign of the moment of N about the contact: lambda3 a b c^2 sin 2psi = N h'
+    # the term lambda3 a b (a^2 - b^2) sin 2psi = N h' has the wrong sign
     "eq 37": lambda at: (10 * at.normal * at.slope, -10 * at.normal * at.slope, 0),
     # the printed row is not the derivative of eq 10
     "eq 38, f1 and f2": lambda at: (
@@ -142,7 +142,7 @@ def rolled(first: float, last: float) -> float:
 
 
 @pytest.mark.parametrize("where", ROWS)
-def test_each_erratum_gives_the_printed_and_the_correct_value(where: str) -> None:
+def test_an_erratum_gives_the_printed_and_the_correct_value(where: str) -> None:
     found, (printed, right, scale) = numbers(where), ROWS[where](Exact(ANGLE))
     assert found.printed == (close(printed) if printed else zero(scale))
     assert found.right == (close(right) if right else zero(scale))
@@ -209,12 +209,11 @@ def test_the_printed_lambda3_divides_by_zero() -> None:
 
 
 def test_the_correct_lambda4_vanishes() -> None:
-    """Lambda4 is printed with an extra b^2 in the divisor and the wrong sign of g; on the exact
-    motion it vanishes."""
+    """Lambda4 is printed with an extra b^2 in the divisor and the wrong sign of g."""
     found, at = numbers("eq 39, λ4"), Exact(ANGLE, b=0.8)
     assert found.printed == close(-at.couple * math.cos(ANGLE) ** 2 / (4 * 0.8**2))
     assert found.right == zero(abs(found.printed))
-    # lambda4 follows from eq 35 with df4's sign, and from lambda1 and lambda2 of eq 39
+    # with lambda4 negated, as in df4, the multipliers of eq 39 satisfy eq 35
     q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
     q_ddot = np.array([0.3, -0.8, 1.1, 0.0, 0.0])
     one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
@@ -251,7 +250,7 @@ def lost(q: Array, q_ddot: Array, a: float, b: float, mass: float, **_: float) -
 
 
 def test_printed_equations_of_motion_are_off_by_the_misprints() -> None:
-    """x, z and r agree; theta and psi differ by df2, f1 and the signs of lambda3 and lambda4."""
+    """Rows x and z agree; the others differ by f1, df2 and the signs of lambda3 and lambda4."""
     q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
     q_ddot, forces = np.array([0.3, -0.8, 1.1, 0.2, 0.1]), np.array([1.0, -2.0, 0.5, 0.7])
     printed = report.eqs_33_to_37(q, q_ddot, forces, **UNEVEN)
@@ -270,7 +269,7 @@ def test_printed_equations_of_motion_are_off_by_the_misprints() -> None:
     assert gap[4] == pytest.approx(sine, rel=1e-13)
 
 
-def test_tan_is_infinite_at_a_quarter_turn() -> None:
+def test_the_printed_df4_exceeds_1e30_at_a_quarter_turn() -> None:
     found = numbers("eq 32, df4, code")
     assert found.printed > 1e30 and found.right == close(16.0)
 
@@ -374,7 +373,7 @@ def test_the_right_equations_hold_on_an_exact_motion() -> None:
 
 
 def test_multipliers_equal_those_of_the_package() -> None:
-    """They are F, N, lambda3 (for the row 2 (...)^(3/2) grad f3) and lambda4 = 0."""
+    """F and N agree, and lambda4 is 0; lambda3 belongs to the row 2 (...)^(3/2) grad f3."""
     motion = trajectory()
     forces = report.multipliers(motion.q, accelerations(motion), **UNEVEN)
     polar = (0.7 * np.sin(motion.psi)) ** 2 + (2.0 * np.cos(motion.psi)) ** 2
@@ -447,7 +446,7 @@ def test_eq_42_has_all_the_terms_missing_from_eq_40() -> None:
     q_ddot = np.array([0.3, -0.8, 1.1, 0.2, 0.1])
     complete = float(report.complete_f(q, q_ddot, **UNEVEN))
     assert f_of_eq_42(q, q_ddot, **UNEVEN) == pytest.approx(complete, rel=1e-12)
-    # eq 41 with this bracket equals eq 36 with the multipliers inserted
+    # eq 41 with this bracket equals eq 36 with the multipliers inserted, times -1
     one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
     third = complete / (4 * (2.0 * 0.7) ** 3 * math.sin(2 * q[3]) * (4 - 0.49))
     eq_36 = report.eqs_33_to_37(q, q_ddot, [one, two, third, 0.0], **UNEVEN)[4]

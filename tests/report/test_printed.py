@@ -29,14 +29,14 @@ def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.Printe
 
 @pytest.mark.parametrize(("printed", "gap"), GAPS)
 @pytest.mark.parametrize("mass", [1.0, 10.0])
-def test_wrong_equations_lift_the_body(printed: tuple[str, ...], gap: float, mass: float) -> None:
-    """Cause (a): the equations are wrong. The body leaves the ground even from a start that is
-    consistent with them, at any tolerance."""
+def test_wrong_equations_change_the_gap(printed: tuple[str, ...], gap: float, mass: float) -> None:
+    """Cause (a): the equations are wrong. The body rises from the ground or sinks into it even from
+    a start that is consistent with them, at any tolerance."""
     q, q_dot = start(0.2, 2.0, printed)
     how: dict[str, Any] = {"printed": printed, "mass": mass}
     loose, tight = (run(q, q_dot, [0.25], rtol=r, atol=r, **how) for r in (1e-8, 1e-11))
     told(printed, tight.gap)
-    assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # the gap is printed with three decimals
+    assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # GAPS has three decimals
     assert abs(loose.gap[0] - tight.gap[0]) < 1e-6
     assert tight.start.violations == ()
     # constraint forces do no work on rates that their own rows allow: the energy is constant
@@ -73,8 +73,8 @@ def test_an_inconsistent_start_lifts_the_body_off_the_ground() -> None:
 
 
 def test_large_steps_lift_the_body_off_the_ground() -> None:
-    """Cause (c): the steps are too large. RK4 steps of 0.02 s give 0.84 m and 40 % more energy
-    after 60 s."""
+    """Cause (c): the steps are too large. RK4 steps of 0.02 s give a gap of 0.84 m and 40 % more
+    energy after 60 s."""
     q, q_dot = start(0.0, 3.2)
     coarse = run(q, q_dot, [0, 60], printed=(), method="rk4", step=0.02)
     assert coarse.gap[1] == pytest.approx(0.84, abs=5e-3)
@@ -98,8 +98,7 @@ def test_samples_do_not_change_the_steps() -> None:
     assert run(q, q_dot, 0.1, printed=()).t.size == 1001
 
 
-def test_a_singular_sample_leaves_earlier_samples_intact() -> None:
-    """Far off the constraints the system becomes singular in doubles, after a quarter second."""
+def test_a_motion_far_off_the_constraints_lasts_a_quarter_second() -> None:
     how: dict[str, Any] = {"consistent": "as_given", "method": "rk4", "step": 0.01}
     with pytest.warns(report.InconsistentStartWarning):
         motion = run([0.3, 1.5, 0.4, 5, 3], [1, 0.5, 2, 7, -3], 0.5, printed=report.EQ_32, **how)
@@ -142,7 +141,7 @@ def test_exact_starts_are_consistent_and_others_are_not(
             run(q, faster, 0.0, **options)
 
 
-def test_the_reports_own_start_is_rejected_naming_its_violations() -> None:
+def test_the_error_for_the_reports_own_start_names_its_violations() -> None:
     """The report starts flat with z_dot = 1 m/s, no x_dot and a psi_dot that does not fit.
 
     test_corrected.py shows how the right rows treat this start.
@@ -160,7 +159,6 @@ def test_the_repr_of_a_motion_states_its_equations() -> None:
 
 
 def test_leading_axes_of_states_broadcast_or_are_rejected() -> None:
-    """The error names all shapes."""
     two, three, one = (np.stack([Q] * n) for n in (2, 3, 1))
     of_body = (report.eq_39, report.eq_40, report.eq_41, report.eq_42, report.lambda4_numerator,
                report.multipliers, report.complete_f)  # fmt: skip

@@ -69,7 +69,7 @@ def test_the_period_agrees_with_the_energy_integral(motion: Motion) -> None:
     assert off <= LARGEST_ERROR
 
 
-def test_the_period_test_detects_a_speed_off_by_16_ulp() -> None:
+def test_the_period_test_detects_a_speed_off_by_16_eps() -> None:
     motion = MOTIONS["rotation"]
     changed = (*motion[:5], motion[5] * (1 + 16 * EPS))
     off = float(abs(exact_period(changed) - exact_period(motion))) / period_unit(motion)
@@ -138,8 +138,8 @@ def test_a_nearly_round_body_loses_no_accuracy(theta: float, omega: float) -> No
 @pytest.mark.parametrize("shape", [(2.0, 1.0), (0.7, 1.9), (1.0, 1e-3)])
 @pytest.mark.parametrize("quarter", [0, 1, 2, -1, -3, 5])
 def test_a_body_at_rest_stays_flat_or_on_its_tip(shape: tuple[float, float], quarter: int) -> None:
-    """The body stays at rest if the double next to the quarter turn is an equilibrium: |h'| is
-    within 8 ulp of h. The doubles next to pi or 5 pi/2 may not be; then the body rocks by the
+    """The body stays at rest if the double next to the quarter turn is an equilibrium: |h'| is at
+    most 8 eps h. The doubles next to pi or 5 pi/2 may not be; then the body rocks by the
     rounding of the angle."""
     theta = quarter * math.pi / 2
     a, b = shape
@@ -156,9 +156,9 @@ def test_a_body_at_rest_stays_flat_or_on_its_tip(shape: tuple[float, float], qua
 
 @pytest.mark.parametrize("rounder", [1e-3, 1e-6, 1e-9])
 def test_a_nearly_round_body_released_near_its_tip_falls(rounder: float) -> None:
-    """h' is smaller than a rounding of h, but the angle resolves the distance from the tip. omega
-    is distance * lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), up to terms in
-    the square of the distance and the rounding of the angle and of the exponent."""
+    """h' may be smaller than a rounding of h, but the angle resolves the distance from the tip.
+    omega is distance * lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), up to terms
+    in the square of the distance and the rounding of the angle and of the exponent."""
     a, b, beside = 1.0 + rounder, 1.0, 2.0**-30
     with mp.workdps(40):
         off = mp.mpf(math.pi / 2 + beside) - mp.pi / 2
@@ -193,7 +193,7 @@ def test_a_motion_on_the_separatrix_creeps_to_the_tip_and_never_passes(direction
         # the double math.pi/2 lies below pi/2: reaching it is not passing
         assert np.all(np.diff(theta) >= 0) and theta[-1] <= math.pi / 2
         assert np.all(np.diff(omega) <= 0) and omega[-1] >= 0
-        # x is the sum of a path and of an angle, each with an error of up to an ulp
+        # x has the errors of the path and of the angle, each of up to an ulp
         assert np.all(np.diff(x) >= -2 * math.ulp(path)) and x[-1] <= path + 2 * math.ulp(path)
         # near the tip the distance decays at the tip rate, up to terms of second order
         near = np.flatnonzero((math.pi / 2 - theta < 1e-3) & (math.pi / 2 - theta > 1e-5))

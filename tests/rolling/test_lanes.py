@@ -57,7 +57,6 @@ def same(found: np.ndarray, expected: np.ndarray) -> bool:
     ids=["few", "thin", "long", "round", "short"],
 )
 def test_a_scene_has_the_same_bits_in_a_batch(level: str, ratio: float, half_turns: float) -> None:
-    """The bits agree for any number of workers."""
     motions = scenes(2000, 1, ratio=ratio, half_turns=half_turns)
     alone = states(ONE_BY_ONE, motions)
     for workers in (1, 2):
@@ -104,7 +103,7 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
         "gyration2": 10.0 ** np.arange(-58, 58, 4), "gravity": 10.0 ** np.arange(-29, 29, 2),
         "omega": 3.0, "t": 0.2,
     },
-    # a thin body takes 2.4 times as long from 45 degrees to its tip as to its flat position
+    # the start is nearer to the tip, from which the body moves away, past the flat position
     "from beside 45 degrees past the flat": lambda: {
         "b": 0.02, "theta": -0.79, "omega": 3.0, "t": np.linspace(0.15, 0.35, 41),
     },
@@ -143,7 +142,7 @@ WRONG = {
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("name", WRONG)
 def test_an_invalid_value_is_reported_with_its_index(level: str, workers: int, name: str) -> None:
-    """The message names the first wrong number, even if later chunks or steps contain more."""
+    """The message names the first wrong number, although later scenes contain more."""
     motions = scenes(3000, 5, ratio=10.0, half_turns=10.0)
     motions[name][[700, 2900]] = WRONG[name]
     motions["t"][[705, 2901]] = 1e30

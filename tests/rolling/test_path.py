@@ -35,7 +35,7 @@ def path(theta: float, a: float, b: float) -> mp.mpf:
 
 
 def excess(start: Start, t: float, state: State) -> float:
-    """Error of x, in units of the effect of rounding theta and the time, plus four ulps of x."""
+    """Error of x, relative to the effect of rounding theta and the time plus four ulps of x."""
     a, b, theta0, _ = start
     theta, omega, x = state
     with mp.workdps(30):
@@ -58,11 +58,11 @@ def starts(count: int) -> Iterator[Start]:
 
 
 def times_past_a_tip(start: Start, rng: random.Random) -> list[float]:
-    """Times in the first two turns or swings after the first fall from the tip."""
+    """Three times, at one to three times the duration of the first fall from the tip."""
     a, b, theta, omega = start
     body = Scene(a, b)
     long_axis, short_axis = max(a, b), min(a, b)
-    # rate at which a fall from the tip grows, and number of growth times until it is of size 1
+    # rate at which the distance from the tip grows, and growth times until it is of size 1
     inertia = long_axis * (body.gyration2 + long_axis**2)
     rate = math.sqrt(9.81 * (long_axis - short_axis) * (long_axis + short_axis) / inertia)
     gone = math.log(1 / min(abs(omega) / rate + abs(math.cos(theta)) * (a > b) + 1e-300, 0.5))
@@ -99,7 +99,7 @@ def test_x_agrees_with_the_centre_path_at_the_angle() -> None:
     assert max(worst.values()) <= LARGEST_ERROR, worst
 
 
-# flat, upright, round and thinnest bodies that turn in both directions, some for many half turns
+# flat, upright, round and thinnest bodies, in both directions, two of them from distant angles
 SCENES = {
     "flat": Scene(2.0, 1.0, theta=0.2, omega=3.2, x=0.3),
     "upright": Scene(0.7, 1.9, theta=1.2, omega=-4.0),

@@ -1,7 +1,7 @@
 """The equation of rolling that the integrators solve, on level ground and on slopes.
 
 The reference is Lagrange's equation with the kinetic energy D theta'^2/2 and the potential energy
-V = g (h cos alpha - x sin alpha), x' = h, whose derivatives are numerical, in 40 digits:
+V = g (h cos alpha - x sin alpha), x' = h, whose derivatives are numerical, in 80 digits:
     D theta'' + D' theta'^2/2 + V' = 0.
 """
 
@@ -109,7 +109,7 @@ def test_the_public_equation_agrees_with_the_core_bit_for_bit(shape: tuple[float
 @pytest.mark.parametrize("slope", SLOPES)
 @pytest.mark.parametrize(("a", "b", "gyration2"), [(1.0, 2e-3, 1e-4), (0.05, 3.0, 0.02), (2, 1, 1)])
 def test_forces_follow_from_newtons_law(a: float, b: float, gyration2: float, slope: float) -> None:
-    """The forces are computed from Newton's law for the centre in 40 digits. The bound is 16 ulps
+    """The forces are computed from Newton's law for the centre in 80 digits. The bound is 16 ulps
     of the terms, divided by D, that add up to N and F."""
     rng = np.random.default_rng(6)
     for theta, omega in zip(rng.uniform(-4, 4, 60), rng.normal(0, 3, 60), strict=True):

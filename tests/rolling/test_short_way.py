@@ -125,7 +125,7 @@ def test_attributes_and_signature_are_those_of_the_function() -> None:
     assert not hasattr(rl.flow, "no_such_attribute")
 
 
-def test_the_function_pickles_by_name_copies_to_itself_and_binds() -> None:
+def test_flow_can_be_pickled_copied_and_bound_like_a_function() -> None:
     for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
         written = pickle.dumps(rl.flow, protocol)
         assert pickle.loads(written) is rl.flow and len(written) < 100

@@ -1,6 +1,6 @@
 """Exact rolling on slopes beyond the reference table: many half turns, long climbs, round bodies.
 
-The references share no formula with the package. They use mpmath's Hurwitz zeta function and its
+The references share no code with the package. They use mpmath's Hurwitz zeta function and its
 quadrature of the energy integral, without adding up half turns.
 """
 
@@ -130,8 +130,8 @@ def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) ->
 
 
 def test_a_body_returns_to_its_start_after_twice_the_time_to_its_turning_point() -> None:
-    """The mirror image of the climb ends at this time. The tested doubles lie on both sides of this
-    end."""
+    """The return is computed as the mirror image of the climb, which ends at this time. The tested
+    doubles lie on both sides of this end."""
     for omega in np.linspace(-6.0, -1.0, 41):
         scene = rl.Scene(1.0, 0.7, slope=0.3, omega=omega)
         back = 2 * rolled(scene, [0.0, 30.0]).when(omega=0.0)[0]
@@ -167,8 +167,8 @@ def test_a_short_path_stays_accurate(way: float, omega: float) -> None:
 
 @pytest.mark.parametrize("slope", [1e-12, 1e-20, -1e-200])
 def test_no_circle_rests_on_a_slope(slope: float) -> None:
-    """On a slope no circle has its contact right below its centre: it rolls from rest if friction
-    holds a third of the pull, and slides otherwise."""
+    """On a slope the contact of a circle is not right below its centre. The circle rolls from rest
+    if friction can hold a third of the pull, and slides otherwise."""
     needed = abs(slope) / 3
     scene = rl.Scene(1.0, 1.0, slope=slope, friction=needed * (1 + 1e-9))
     less = scene.replace(friction=needed * (1 - 1e-9))
@@ -199,8 +199,7 @@ def assert_keeps_energy(found: rl.Trajectory) -> None:
 
 @pytest.mark.parametrize("ratio", [1e-3, 1 - 1e-12, 1e3])
 @pytest.mark.parametrize("slope", [1e-300, 1e-9, -0.5, 1.5])
-def test_all_shapes_conserve_energy(ratio: float, slope: float) -> None:
-    """The times span six decades."""
+def test_thin_and_nearly_round_bodies_conserve_energy(ratio: float, slope: float) -> None:
     scene = rl.Scene(ratio, 1.0, slope=slope, theta=0.7, omega=0.4)
     assert_keeps_energy(rolled(scene, np.concatenate([[0.0], np.logspace(-2, 4, 60)])))
 
@@ -209,7 +208,6 @@ def test_all_shapes_conserve_energy(ratio: float, slope: float) -> None:
 @pytest.mark.parametrize("slope", [1e-8, 1e-4, -0.02, 0.3])
 @pytest.mark.parametrize("half_turns", [30, 1000, 1e6, 1e9])
 def test_a_climb_conserves_energy(ratio: float, slope: float, half_turns: float) -> None:
-    """The samples cover the climb and the descent."""
     height = half_turns * math.pi * max(ratio, 1.0) * math.sin(abs(slope)) + abs(1 - ratio)
     speed = math.sqrt(9.81 * height / rl.Scene(ratio, 1.0).gyration2)
     scene = rl.Scene(ratio, 1.0, slope=slope, omega=-math.copysign(speed, slope))
@@ -220,7 +218,7 @@ def test_a_climb_conserves_energy(ratio: float, slope: float, half_turns: float)
     assert_keeps_energy(found)
 
 
-@pytest.mark.parametrize("omega", [-5.0, 3.0, -150.0])  # the last start climbs some 2000 half turns
+@pytest.mark.parametrize("omega", [-5.0, 3.0, -150.0])  # the last start climbs over 6000 half turns
 @pytest.mark.parametrize("begin, end", [(0.0, 40.0), (20.0, 20.5), (1000.0, 9e4)])
 def test_samples_do_not_depend_on_each_other(omega: float, begin: float, end: float) -> None:
     """A sample has the same bits alone and among others before and after it, also within one half
@@ -310,8 +308,8 @@ def drawn_on_slopes(rng: np.random.Generator, n: int) -> dict[str, Any]:
 
 
 def test_the_flow_up_and_down_slopes_agrees_with_power_series() -> None:
-    """The package uses the energy alone, uphill and downhill; the power series solve the equation
-    of motion. Both agree to within the effect of a rounding of each argument plus two of the
+    """The package uses the energy, uphill and downhill; the power series solve the equation of
+    motion. Both agree to within the effect of a rounding of each argument plus two of the
     state."""
     asked = drawn_on_slopes(np.random.default_rng(0), 300)
     t = np.minimum(10 ** np.random.default_rng(1).uniform(-3, 1, 300), 6 / np.abs(asked["omega"]))

@@ -151,7 +151,7 @@ def test_gauss_is_accurate_to_within_rounding(motion: Motion) -> None:
 
 
 def test_errors_of_radau_are_as_small_as_its_order_predicts() -> None:
-    """Radau with steps of R/8 errs by 0.0012 (h/R)^5 per passage of the flat side.
+    """Radau with steps of R/8 errs by at most 0.0012 (h/R)^5 per passage of the flat side.
 
     The error of a step is h^6 y^(6) / 7200, with y^(6) = 6!/r^6 at distance r of the singularity.
     Over all steps of a passage, where r^2 = R^2 + t^2, that sums up to 0.1 (h/R)^5 3 pi/8. The

@@ -73,8 +73,8 @@ def test_rocking_is_accurate_to_a_few_rounding_errors(row: dict[str, str]) -> No
 def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
     scene: rl.Scene, distance: float, share: float
 ) -> None:
-    """A body that starts towards or away from the rim swings like one that starts at rest farther
-    inside.
+    """A body that starts towards or away from the rim swings like one that starts at rest closer to
+    the rim.
 
     The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the minimum d (1 -
     share^2)^(1/2), up to terms in d^2 and an ulp of theta. These errors change the period, 2

@@ -123,8 +123,8 @@ def test_the_random_impulses_cover_every_outcome() -> None:
 
 @pytest.mark.parametrize("push", [2.0, -2.0])
 def test_a_horizontal_push_with_unlimited_friction_makes_the_body_roll(push: float) -> None:
-    """The product inf * 0 of mu = inf and Lambda_z = 0 does not occur. A push J at the centre of a
-    body that lies flat gives m (k^2 + b^2) omega = J b."""
+    """The product of mu = inf and reaction_z = 0 is not formed. A push J at the centre of a body
+    that lies flat gives m (k^2 + b^2) omega = J b."""
     found = Scene(2.0, 1.0, mass=1.0, impulse=Impulse(jx=push, jz=0.0)).initial_state
     assert found.mode == Mode.ROLLING
     assert found.omega == pytest.approx(push * 1.0 / 2.25, rel=4 * EPS)

@@ -191,8 +191,8 @@ def test_unlimited_friction_agrees_with_its_three_formulas() -> None:
 
 
 def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
-    """The energy lost is the impulse times the mean velocity of the contact, up to roundings of the
-    kinetic energy. The reaction is the momentum gained by the centre, up to its roundings."""
+    """The energy lost is minus the impulse times the mean velocity of the contact, up to roundings
+    of the kinetic energy. The reaction is the momentum gained by the centre, up to roundings."""
     lossless = 0
     for hit in hits(600, 19, bounces=3):
         along, away = impulses(hit)

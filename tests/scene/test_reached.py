@@ -16,7 +16,7 @@ from oracles.numbers import EPS
 from rolling_ellipse import Impulse, Scene
 from rolling_ellipse.geometry import support, support_slope
 
-MOST = 1e12  # limit of energy / (m g max(a, b)) and of height / max(a, b)
+MOST = 1e12  # limit of v^2/(g L) and height/L, with L = max(a, b), and of J^2/(2 m^2 g L)
 DOWNHILL = Scene(2.0, 1.0, slope=0.1, omega=3.0)
 LEVEL = Scene(2.0, 1.0, omega=3.2)
 

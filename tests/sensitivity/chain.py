@@ -117,7 +117,7 @@ def by_differences(y: Any, p: Mapping[str, Any], wrt: list[str]) -> tuple[Any, A
 
 
 def start(scene: Scene, p: dict[str, Any], wrt: list[str]) -> tuple[Any, Any]:
-    """The start and its derivatives; missing z, x_dot and z_dot follow from the contact."""
+    """The start and its derivatives; missing speeds are those of rolling, or 0 in flight."""
     typed = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 
     def state(given: dict[str, Any], q: dict[str, Any]) -> Any:
@@ -196,7 +196,7 @@ def chain(motion: Trajectory, wrt: list[str]) -> tuple[Any, Any]:
 
 
 def _side(state: Any, p: Mapping[str, Any]) -> int:
-    """The sign of the slip of a sliding state, opposite to the friction of rolling at the start."""
+    """The sign of the slip; a slip of 0 is taken to start against the friction of rolling."""
     if state.mode.name != "SLIDING":
         return 0
     y = np.array([state.x, state.z, state.theta, state.x_dot, state.z_dot, state.omega])

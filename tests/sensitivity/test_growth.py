@@ -51,7 +51,7 @@ def test_growth_agrees_with_the_exact_orbit_while_it_is_known() -> None:
         assert abs(found / true - 1) < 64 * EPS * found, end
 
 
-def test_a_rounding_grows_to_a_thousandth_by_the_stated_time() -> None:
+def test_a_rounding_grows_to_about_a_thousandth_by_the_stated_time() -> None:
     """At this time the angle of a neighbour that starts one rounding (1.1e-16) away differs by 1e-5
     to 0.1 rad, since the neighbour has its own roundings. The difference is smaller 6 s earlier and
     larger 6 s later."""
@@ -108,7 +108,7 @@ def test_growth_ends_with_a_message_where_there_is_no_derivative() -> None:
     assert found.message in repr(found) and found.exponents.shape == (6,)
 
 
-def test_only_changes_of_angle_and_position_remain_after_summed_bounces() -> None:
+def test_three_of_six_coordinates_have_no_growth_after_summed_bounces() -> None:
     """The package sums the last bounces of the disc, after which three columns vanish."""
     disc = Scene(1.0, 1.0, z=2.0, omega=6.0, friction=0.2, restitution=0.5)
     found: Any = simulate(disc, 3.0).growth()

@@ -151,7 +151,7 @@ def test_gains_that_are_too_large_give_a_warning(method: str, gains: tuple[float
     assert not any("gains" in str(warning.message) for warning in then)
 
 
-def test_controlled_steps_find_the_stability_limit_by_themselves() -> None:
+def test_controlled_steps_stay_near_the_stability_limit() -> None:
     """With gains of 200/s, dop853 at its default tolerances keeps steps near the limit (on average
     at most twice it, since errors are known only after a step), without a loss or a warning."""
     how = kept_by("baumgarte", method="dop853", baumgarte=(200.0, 200.0))

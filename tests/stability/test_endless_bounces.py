@@ -1,6 +1,6 @@
 """Infinitely many bounces in a finite time (Zeno): a body dropped flat, e = 0.5.
 
-Bounce n takes 2 v e^n/g, all together v/g (1 + e)/(1 - e). A loop over events never passes that
+Bounce n takes 2 v e^n/g; with the fall, v/g (1 + e)/(1 - e). A loop over events never passes that
 time, and with equal steps the body sinks into the ground. The package sums the rest of the series.
 """
 

@@ -67,7 +67,7 @@ def test_the_energy_error_is_measured_correctly() -> None:
 
 @pytest.mark.parametrize("name", DRIFTING)
 def test_drifting_methods_lose_energy_and_phase_as_predicted(name: str) -> None:
-    """Energy errors grow like time over three decades, phase errors like its square over the last
+    """Energy errors grow like time over two decades, phase errors like its square over the last
     decade. Earlier, the truncation of the period, proportional to time, still matters."""
     drifting = errors(QUICK, SAMPLES, [DRIFTING[name]])
     energy = growth(drifting.energy)

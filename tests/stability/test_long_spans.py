@@ -1,4 +1,4 @@
-"""Phase errors of methods from one half turn to 1e9.
+"""Phase errors of methods, extrapolated to 1e9 half turns.
 
 An energy error that grows like t gives a phase error like t^2. A constant energy error gives one
 like t, and drifting constraints one like t^3. The number of steps grows with the span in any case.

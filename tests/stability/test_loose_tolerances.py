@@ -36,10 +36,10 @@ def kind(name: str) -> str:
 
 @each_run
 def test_constraints_are_satisfied_only_by_construction(scene: str, name: str) -> None:
-    """Without stabilization constraints err by half a semi-axis or more, after 100 steps with
-    errors of 1e-2 and drift like t^2. Feedback leaves the errors of a few steps, between a tenth of
-    the tolerance and a semi-axis. All other methods stay within 16 ulp of theta, also at samples
-    between steps."""
+    """Without stabilization constraints err by half a semi-axis or more: in 100 steps, errors of
+    1e-2 grow like t^2. Feedback leaves the errors of a few steps, between a tenth of the tolerance
+    and a semi-axis. All other methods stay within 16 ulp of theta, also at samples between
+    steps."""
     found = run(scene, name)
     if kind(name) == "none":
         assert found.missed.max() > 0.5
@@ -67,8 +67,8 @@ def test_energy_is_conserved_only_by_construction(scene: str, name: str) -> None
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("name", ["dopri5, projection", "dopri5"])
 def test_satisfying_the_constraints_does_not_make_a_motion_right(scene: str, name: str) -> None:
-    """dopri5 loses more than twice the tolerance of its energy and a tenth of a radian, although
-    projection or rolling holds its constraints to the last digit. The losses depend on which steps
-    are rejected, and therefore, after a minute, on the last bits."""
+    """dopri5 errs by more than twice the tolerance in energy and a tenth of a radian in phase,
+    although projection or rolling holds its constraints to the last digit. The errors depend on
+    which steps are rejected, and therefore, after a minute, on the last bits."""
     found = run(scene, name)
     assert found.missed.max() < 1e-13 and found.energy.max() > 2 * RTOL and found.phase > 0.1

@@ -1,8 +1,9 @@
 """Angles where the report's formulas divide by zero although the motion is regular.
 
-The report's lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2), and its fourth row has tan theta.
-Both are infinite at every quarter turn, and lambda3 of a circle is infinite everywhere. The linear
-system of the multipliers, the rows with cos^2 theta and the support function are regular there.
+The report's lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2): it is infinite in the flat position,
+at the tip, and everywhere for a circle. The report's fourth row has tan theta, which is infinite at
+the tip. The linear system of the multipliers, the rows with cos^2 theta and the support function
+are regular there.
 """
 
 import math
@@ -23,13 +24,13 @@ def slope(values: list[float], first: int = 3) -> float:
     return exponent([10.0**-k for k in CLOSE if k >= first], values[first - CLOSE[0] :])
 
 
-def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
+def test_the_printed_lambda3_diverges_at_the_tip_and_for_a_circle() -> None:
     """Near the tip the printed value, from which terms are lost, grows like distance^-3: 1/sin(2
     psi) times tan^2 theta. Near a circle it grows like 1/(a - b), with a numerator that changes its
     sign near a/b = 1.003. The relative errors of these laws are the distance, 1e-3 where the fits
-    begin, and 30 times the distance for the circle. With all terms the value has a limit 0/0. Its
-    rounding error grows like 1/distance: an ulp of psi = pi/2 is 2.2e-16/10^-k of the distance, and
-    tan^2 theta contains this error twice."""
+    begin, and 30 times the distance for the circle. With all terms the value is 0/0 in the limit.
+    Its rounding error grows like 1/distance: an ulp of psi = pi/2 is 2.2e-16/10^-k of the distance,
+    and tan^2 theta contains this error twice."""
     at_tip = [third(TIP + 10.0**-k, 2.0, 1.0).printed for k in CLOSE]
     of_circle = [third(0.7, 1 + 10.0**-k, 1.0).printed for k in CLOSE]
     limit = third(TIP + 1e-5, 2.0, 1.0).complete

@@ -1,4 +1,4 @@
-"""Ellipses with a/b from 1 to 1000: curvature radius and rates vary by (a/b)^3 in a turn.
+"""Ellipses with a/b from 1 to 1000: the curvature radius varies by a factor of (a/b)^3.
 
 The body passes its flat side in about b/a of a swing. Equal steps must be that small everywhere;
 controlled steps adapt, and their number grows only logarithmically.

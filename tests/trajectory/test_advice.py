@@ -124,7 +124,7 @@ def test_the_plotted_energy_error_does_not_depend_on_the_origin_of_x() -> None:
         assert np.max(np.abs(energy_error(there) - here)) <= allowed
 
 
-def test_every_run_with_a_loss_gives_a_warning_and_no_other_does() -> None:
+def test_large_losses_give_a_warning_and_losses_within_the_limits_do_not() -> None:
     """Only some steps are checked, so a temporary loss may be seen below its maximum: a warning is
     certain only above three times the limit."""
     seen = {True: 0, False: 0}
@@ -142,7 +142,7 @@ def test_every_run_with_a_loss_gives_a_warning_and_no_other_does() -> None:
     assert seen[True] >= 5 and seen[False] >= 30, seen
 
 
-def test_projection_hides_no_step_that_is_too_large() -> None:
+def test_steps_that_are_too_large_give_a_warning_in_spite_of_projection() -> None:
     """Energy and constraints hold at the ends of steps, but the motion is wrong: its angle reaches
     -22 rad and more than 60 rad, while the true angle only increases, to 38.4 rad."""
     scene = Scene(2.0, 1.0, theta=0.2, omega=3.2)

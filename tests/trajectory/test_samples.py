@@ -205,7 +205,7 @@ def test_forces_and_torques_obey_newton_and_euler(motion: Trajectory) -> None:
     close(motion.friction_force, mass * motion.x_ddot, mass * np.abs(motion.x_ddot), 4)
     close(motion.normal_force, mass * motion.z_ddot + weight, lift + weight, 4)
     turning = -e.h * motion.friction_force - e.slope * motion.normal_force
-    # forces are the sums h omega_dot + h' omega^2 and h' omega_dot + h'' omega^2
+    # accelerations are the sums h omega_dot + h' omega^2 and h' omega_dot + h'' omega^2
     omega2, omega_dot = motion.omega**2, np.abs(motion.omega_dot)
     push = mass * (e.h * omega_dot + np.abs(e.slope) * omega2)
     lever = mass * (np.abs(e.slope) * omega_dot + np.abs(e.curvature) * omega2) + weight

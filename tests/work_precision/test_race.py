@@ -198,7 +198,7 @@ def test_an_inadequate_model_has_no_answer() -> None:
     assert math.isnan(exact.errors.final) and math.isnan(exact.time)
 
 
-def test_mappings_may_contain_any_argument_of_simulate() -> None:
+def test_mappings_may_contain_arguments_of_simulate() -> None:
     methods = [{"name": "two", "method": "gauss", "stages": 2}, {"method": "gauss", "stages": 4}]
     found = work_precision(ROTATION, END, methods=methods, rounds=1, steps=[0.05])
     assert found.names == ("two", "gauss/4")
@@ -259,7 +259,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 class Timed(Peer):
-    """Exact rolling with error = setting that spends time on preparation, first and later calls."""
+    """Exact rolling whose error is the setting; preparation and calls advance the clock."""
 
     def __init__(
         self, name: str, clock: Clock, *, once: float = 0.0, always: float = 0.0,

@@ -1,4 +1,4 @@
-"""The error that `work_precision` calls attainable agrees with the units of an 80-digit table."""
+"""The error that `work_precision` calls attainable agrees with the units of a 40-digit table."""
 
 import math
 from typing import Any

@@ -175,7 +175,7 @@ def plot_constraints(
     motion, so that rounding errors are about 1e-16 for any body. The upper panel shows f2, f3, f4
     and the gap; the lower panel shows f1, the rates of the others and the slip (see
     `ConstraintResiduals`). For several motions each panel shows the largest error. Exact zeros are
-    not shown, nor the slip of a sliding body and the gap in flight, which are not constrained.
+    not shown, nor the slip of a sliding body or the gap in flight, which are not constrained.
     Dots show the samples or, if there are fewer than 100, the points of a curve.
     Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
@@ -214,7 +214,7 @@ def plot_constraints(
 
 
 def _errors_of(motion: Trajectory, style: Style, panels: int) -> list[Mapping[str, FloatArray]]:
-    """Return the named errors of each panel, or only the largest if there are several motions."""
+    """Return the named errors of each panel, or only the largest if the motion has a label."""
     positions, velocities = constraint_errors(motion)
     if style.label:
         of_panels = [positions, velocities] if panels == 2 else [{**positions, **velocities}]

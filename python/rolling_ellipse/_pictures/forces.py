@@ -125,7 +125,8 @@ def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, t
     if ax.dataLim.height < 1e-9 * weight:  # flight throughout: the forces give no scale
         ax.set_ylim(-weight, weight)
     if max(float(np.max(np.abs(m.normal_force))) for m in motions) > _SPIKE * weight:
-        decade = 10.0 ** round(math.log10(weight))  # a power of ten: no tick in the linear part
+        # A power of ten, so that 0 is the only tick in the linear part
+        decade = 10.0 ** round(math.log10(weight))
         ax.set_yscale("symlog", linthresh=decade, linscale=1.5)
         ticks = SymmetricalLogLocator(base=10, linthresh=decade)
         ticks.set_params(numticks=ax.yaxis.get_tick_space())
@@ -149,8 +150,8 @@ def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | 
 def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
     """Draw impulses as stems whose height is the mean force over a time that their label states.
 
-    The time is the largest power of ten below sqrt(size/gravity), so that the impulse of a fall
-    from the height of the body becomes a force of a few weights.
+    The time is the largest power of ten up to sqrt(max(a, b) / gravity), so that the impulse of a
+    fall from the height of the body, 2 max(a, b), becomes a force of about 2 to 20 weights.
     """
     scene = shown.motions[0].scene
     time = 10.0 ** math.floor(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))

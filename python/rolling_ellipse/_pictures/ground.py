@@ -132,8 +132,8 @@ def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Pol
 class Ruler:
     """Tick marks on the ground; every fifth is longer and labelled with its position.
 
-    Only ticks within `span` [m] of the point set by `move` are drawn, so that the cost does not
-    grow with the distance that a body rolls.
+    Only ticks within about `span` [m] of the point set by `move` are drawn, so that the cost does
+    not grow with the distance that a body rolls.
     """
 
     def __init__(self, ax: Axes, scene: Scene, span: float) -> None:

@@ -108,7 +108,7 @@ class Label(NamedTuple):
 
 
 def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any, Text]:
-    """Write the labels that fit without covering lines or earlier labels; `size` is in points."""
+    """Write the labels for which there is a free spot, and return them; `size` is in points."""
     page = size_in_points(ax)
     dots = [page[None]]
     for line in ax.lines:

@@ -28,7 +28,7 @@ from .sampling import FEW, between, half_turns, is_at_hand, period_of, span_of
 
 _FEW_TURNS = 2.0  # a motion with more turns is folded into one half turn
 _COARSE = 1e-3  # largest accepted ulp of theta [rad]
-_MOST = 1000.0  # maximum number of half turns or swings in one picture
+_MOST = 1000.0  # maximum number of half turns or half swings in one picture
 _TICK = 0.45  # minimum distance between ticks [inch]
 _POINTS = 801, 100_000  # maximum number of points of a separatrix: per half turn, and in all
 _SMALL = 0.1  # fraction of the roll-over speed; a slower motion would be a dot inside the eye
@@ -83,7 +83,7 @@ def plot_phase(
     Notes
     -----
     The lines show the motions themselves, whatever samples the trajectories have. If exact periodic
-    rolling lasts more than 60 turns or swings, only one is drawn, because all are alike. Other
+    rolling lasts more than 60 turns or full swings, only one is drawn, because all are alike. Other
     motions are drawn for at most their first 1000 half turns. The title says so in both cases.
 
     Examples

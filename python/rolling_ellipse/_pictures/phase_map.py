@@ -53,9 +53,9 @@ COLOURS = {  # luminances differ by a factor of 1.25 or more, except that of EDG
 TIP_ASPECT = math.sqrt(3)
 """The a/b of a uniform disc up to which N of rolling first vanishes at the tip.
 
-The value is exact: at the speed at which N(h) of physics (33) vanishes at the tip, its derivative
-there, with k^2 = (a^2 + b^2)/4, has the sign of a^2 - 3 b^2. For larger a/b, the minimum of N is
-before the tip.
+The value is exact: at the speed at which N(h) of physics (33) vanishes at the tip, dN/dh at the tip
+has the sign of a^2 - 3 b^2 if k^2 = (a^2 + b^2)/4. For larger a/b, the minimum of N is before the
+tip.
 """
 LAST_ASPECT = 9.75321681656
 """The a/b of a uniform disc above which rolling ends before the tip, whatever the friction.
@@ -330,7 +330,7 @@ class Plane:
         return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
 
     def caption(self) -> str:
-        """Return the fixed quantities as text, such as "μ = 0.5", and b if one is a speed."""
+        """Return the fixed quantities as text, such as "μ = 0.5", and b if there is a speed."""
         values = [
             f"{AXIS_NAMES[name].split()[0]} = {value:.4g}".replace("inf", "∞")
             + " rad/s" * (name == "speed")

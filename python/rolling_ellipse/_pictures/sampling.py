@@ -22,7 +22,7 @@ from .._motion.trajectory import Trajectory
 from .._verbs.flow import period
 from .ground import flat_angle
 
-FEW = 120.0  # maximum number of half turns or swings that are drawn one by one over time
+FEW = 120.0  # maximum number of half turns or half swings drawn one by one over time
 PARTS = 800  # number of time intervals for a motion with more half turns than `FEW`
 _IN_A_PART = 96  # samples per interval
 _POINTS = 400, 32  # initial number of points of a curve: the minimum, and the number per half turn
@@ -139,7 +139,7 @@ def period_of(motion: Trajectory) -> float:
 
 
 def half_turns(motion: Trajectory) -> float:
-    """Return roughly how many half turns and swings the samples span.
+    """Return roughly how many half turns or half swings the samples span.
 
     If the motion has a period, the number follows from it. Otherwise half turns and turning points
     are counted at more and more times, spaced irregularly so that they do not match any period.
@@ -163,10 +163,9 @@ def half_turns(motion: Trajectory) -> float:
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
     """Return the time [s] at which a picture of a motion of at most `turns` turns should end.
 
-    It is the earliest of the times at which the body has made so many turns or moved by
-    2 pi max(a, b) per turn, the last sample, and the end of the first whole swing, the second
-    turning point. A turning point is a time at which the rate ("omega" or "x_dot") changes sign, or
-    the start if the rate is 0 there.
+    It is the earliest of the last sample, the second turning point, and the times at which the body
+    has made that many turns or moved by 2 pi max(a, b) times that number. A turning point is a time
+    at which the rate ("omega" or "x_dot") changes sign, or the start if the rate is 0 there.
     """
     start, end = span_of(motion)
     if not is_at_hand(motion):
@@ -239,7 +238,7 @@ def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
     used = np.maximum.accumulate(np.maximum(turned, moved)) / turns
     end = math.inf if used[-1] <= 1 else float(np.interp(1.0, used, t))
     speed = getattr(seen, rate)
-    swung = int(speed[0] != 0)  # turning points before the end of the swing; 0 if the start is one
+    swung = int(speed[0] != 0)  # number of sign changes to skip: 0 if the start is a turning point
     for i in np.flatnonzero(speed[:-1] * speed[1:] < 0)[swung : swung + 1]:
         zero = t[i] + (t[i + 1] - t[i]) * speed[i] / (speed[i] - speed[i + 1])
         end = min(end, float(zero))

@@ -84,8 +84,8 @@ def plot_strobe(
     count : int
         Number of positions, evenly spaced in time from the first sample to `t_end`.
     t_end : float, optional
-        Last time shown [s]. By default the whole motion is shown or, if it is longer, its first
-        three turns or its first swing (the title then says so).
+        Last time shown [s]. By default at most the first three turns or the first swing are shown
+        (if the motion is longer, the title says so).
     **options
         Properties of `matplotlib.patches.Ellipse` for all bodies.
 

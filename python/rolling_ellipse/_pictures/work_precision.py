@@ -178,7 +178,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
     for camp, front in race.fronts.items():
         if front:
             corners = [corner for _, part in parts(front) for corner in part]
-            apart = members is None or camp == "highlight"  # in multiples only members are orange
+            apart = members is None or camp == "highlight"  # `_multiples` has no orange front
             fronts[camp] = ax.plot(
                 *zip(*corners, strict=True), solid_capstyle="butt",
                 color=colors[camp] if apart else palette.shade(0.6),

@@ -18,7 +18,7 @@ from ._mistakes import usual
 from ._tasks import DATA, FILE, NUMBERS, checked, measured_impacts, numbered, sheet_of
 
 _ROUNDING = 1e-4  # assumed relative error of the data; rounding to four digits causes at most 5e-4
-_MOST = 5e-3  # largest relative tolerance, and largest excess over it of a nearly right answer
+_MOST = 5e-3  # largest relative tolerance; nearly right answers may exceed theirs by as much
 _NOTHING = 1e-9  # magnitude assumed for an answer of 0
 _STEP = 1e-6  # relative step of the finite differences for the condition number
 _BY_HAND = 3  # number of tolerances within which an answer from the film is a good estimate

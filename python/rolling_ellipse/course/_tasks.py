@@ -26,7 +26,7 @@ from .._verbs.simulate import simulate
 DATA = json.loads(resources.files(__package__).joinpath("tasks.json").read_text("utf-8"))
 FILE = "ROLLING_ELLIPSE_IMPACTS"
 _KEPT = ("gravity", "slope", "T", "step")  # the same for all seeds
-_PURE = ("friction", "restitution")  # varied separately from lengths of the same value
+_PURE = ("friction", "restitution")  # varied separately from other data of the same value
 _SPREAD = 0.06  # maximum relative difference of numbers from the printed ones
 _MOST = 2**53  # maximum seed: larger ones would not be exact in JSON and in spreadsheets
 _EGG: dict[str, Any] = {"a": 0.035, "b": 0.025}  # the body of the film and of the impacts
@@ -66,9 +66,9 @@ def tasks(seed: int | None = None) -> tuple[Task, ...]:
     ----------
     seed : int, optional
         Whole number from 0 to 2^53, such as a student's number. The data differ from the printed
-        data by up to 6 %, so that the answer to each task remains of the same kind. Equal numbers
-        on a sheet stay equal, except that coefficients differ from other quantities. Sheets 8 and
-        10 have other impacts and another film instead.
+        data by up to 6 %, which does not change the kind of motion in a task. Equal numbers on a
+        sheet stay equal, but friction and restitution vary independently of the other data. Sheets
+        8 and 10 have other impacts and another film instead.
 
     Raises
     ------
@@ -180,8 +180,8 @@ def filmed(seed: int | None) -> tuple[Scene, dict[str, list[float]]]:
         thrown = Scene(**_EGG | _varied(DATA["thrown"], rng))
         motion = simulate(thrown, times)
         first, last = _slips(motion)
-        # a single impact, late enough, during which the slip keeps its sign and after which it is
-        # at least 0.06 m/s: with less, a contact that sticks might fit the film, too
+        # Accept a single impact, after the eighth frame, that leaves a slip of the same sign and
+        # above 0.06 m/s. With less slip, a contact that sticks might fit the film, too.
         if [times[7] < e.t for e in motion.events] == [True] and last * np.sign(first) > 0.06:
             break
     tracks = {"t": times}

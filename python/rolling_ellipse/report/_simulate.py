@@ -83,7 +83,7 @@ def simulate(
         Treatment of a start that violates f2, f3, f4 or a constraint on the rates; with "printed"
         equations the latter are the rows in use. "refuse" raises an error. "project" uses the
         nearest consistent state in the metric of the kinetic energy (theta and z change, x does
-        not, psi and r follow). "as_given" uses the start after an InconsistentStartWarning, and its
+        not, psi and r follow). "as_given" uses the start after an InconsistentStartWarning, and the
         motion is not valid at any time.
     printed : sequence of str, optional
         For the printed equations only: the parts that are as printed, see `constraint_matrix`. The

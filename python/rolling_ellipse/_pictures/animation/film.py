@@ -51,8 +51,8 @@ class RollingAnimation(FuncAnimation):
     fps, speed : float
         Frames per second, and seconds of motion per second of film.
     strips : tuple of Strip
-        One for each motion, from top to bottom, with its `ax`, its `motion` (frame i shows sample
-        i) and the artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `slip`, `shadow`,
+        One for each motion, in order, with its `ax`, its `motion` (frame i shows sample i) and the
+        artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `slip`, `shadow`,
         `centre_trace`, `tip_trace`, `skid_trace`, `arrows`, `names`, `ruler` and `caption`.
     labels : tuple of str
         Names of the motions.

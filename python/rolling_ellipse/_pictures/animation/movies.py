@@ -195,8 +195,10 @@ def pace(
 
 
 def _spin(motion: Trajectory, last: float, fps: float) -> float:
-    """Return the largest mean |omega| [rad/s] over up to 1024 intervals of at least four frames, or
-    over 8 parts of a motion shorter than a frame."""
+    """Return the largest mean |omega| over up to 1024 equal intervals of a motion [rad/s].
+
+    A motion shorter than a frame has 8 of them.
+    """
     count = 8 if last * fps < 1 else int(min(max(last * fps / 4, 1), 1024))
     at = motion.sol(even_times(0.0, min(last, float(motion.t[-1])), count + 1))
     return float(np.max(np.abs(np.diff(at.theta)) / np.maximum(np.diff(at.t), 1e-300)))
