@@ -21,7 +21,7 @@ from rolling_ellipse import (
     simulate,
 )
 from rolling_ellipse._motion import chain as chain_of_parts
-from rolling_ellipse._motion.differences import neighbours
+from rolling_ellipse._motion.differences import RULES, differenced, neighbours
 from rolling_ellipse._motion.inputs import STATE, size_of
 from sensitivity import bounces
 from sensitivity.chain import chain
@@ -256,6 +256,13 @@ def test_stated_errors_of_bounces_are_rarely_below_the_true_errors() -> None:
         shares += [*(off_by / known.event_times_error)]
     assert np.max(shares) < 1.5 and np.mean(np.array(shares) > 1) < 0.03
     assert np.median(shares) > 1e-3
+
+
+def test_rounding_errors_of_rising_and_falling_values_are_equal() -> None:
+    """An input of magnitude 1e6 is the main source of error of values near 0."""
+    moved = 1e-3 * RULES[0][0]
+    rising, falling = (differenced(sign * moved, moved, scale=1e6) for sign in (1, -1))
+    assert rising[0] == -falling[0] and rising[1] == falling[1] > 1e-8
 
 
 def test_derivatives_of_event_times_do_not_depend_on_the_samples() -> None:
