@@ -67,7 +67,8 @@ class ConstrainedBody {
         Eigen::Matrix<double, Rows, 1> multipliers;
     };
 
-    // Solves [M, -A^T; A, 0] (change, multipliers) = (force, demand), all per unit mass.
+    // Solves [M, -A^T; A, 0] (change, multipliers) = (force, demand), with M, force and
+    // multipliers per unit mass.
     template <int Rows>
     Saddle<Rows> solve_saddle(const Eigen::Matrix<double, Rows, 5>& a, const Coordinates& force,
                               const Eigen::Matrix<double, Rows, 1>& demand) const;

@@ -101,7 +101,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     const bool a_is_long = body.a >= body.b;
     const Geometry here =
         geometry(body.axes(), a_is_long ? at.sin : at.cos, a_is_long ? at.cos : at.sin);
-    // The acceleration into the ground of a free body, physics (43), with h'' = rho - h.
+    // The acceleration of the lowest point into the ground without a contact force, physics (43),
+    // and the magnitude of its terms, since h'' = rho - h.
     const Sign pressed = sign({free_acceleration(here, body.gravity, from.omega),
                                body.gravity + (here.rho + here.h) * square(from.omega)});
     if (pressed == Sign::negative) return Outcome::loses_contact;

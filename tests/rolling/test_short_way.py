@@ -110,7 +110,7 @@ def test_other_numbers_do_not_take_the_shortcut(name: str, value: Any) -> None:
         assert probe(1.3, **START, **more) == ("the long way",)
 
 
-def test_attributes_and_signature_are_those_of_the_function() -> None:
+def test_the_shortcut_has_the_attributes_and_signature_of_the_function() -> None:
     assert inspect.isfunction(rl.flow) and inspect.isroutine(rl.flow) and callable(rl.flow)
     for name in ("__name__", "__qualname__", "__module__", "__code__", "__kwdefaults__"):
         assert getattr(rl.flow, name) == getattr(LONG, name)

@@ -23,7 +23,8 @@ RATES = ("x_dot", "z_dot", "omega", "x_ddot", "z_ddot", "omega_dot")
 STEPS = 0.016 * 0.5 ** np.arange(23)  # tried in this order, relative to the input's natural size
 WORST = 1e-3  # relative error above which there is no derivative
 FINE = 1e-8  # relative error below which no better step is needed
-_GROWN = 8.0  # trials end when the error exceeds the smallest one, below FINE, by this factor
+# Once the smallest error is below FINE, trials end at an error this many times as large
+_GROWN = 8.0
 _UNITS = 8  # error bound [ulp] of states and times that the package guarantees
 
 _LEAST_LEVER = 1e-200  # [m]; replaces a rolling resistance of 0

@@ -144,7 +144,7 @@ def read(problem: Problem, path: Path) -> Result:
 
 
 def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] | None:
-    """Return the rows of a table that are not blank, or None for a file without any.
+    """Return the non-blank rows below the names of columns, or None if the file is blank.
 
     Of two columns with the same name, the first is used.
     """

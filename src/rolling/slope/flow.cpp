@@ -127,7 +127,8 @@ class SlopeReader {
                                            : place_before(here, swing.first + rest, 1.0);
     }
 
-    // Whether to use a series about the start at this time although the motion starts with a sum.
+    // Whether the motion starts with a `Sum`, but a series about the start is used instead because
+    // this time is so near the start.
     bool is_near_start(double time) {
         if (!first_sum(flow_) || !is_near(flow_, time, near_in_sum)) return false;
         if (!near_) near_ = piece_from(flow_.body, flow_.start);
