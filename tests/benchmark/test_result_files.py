@@ -55,6 +55,25 @@ def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
     assert score.passed and score.events["times"].keys() == {"STICK"}
 
 
+def test_decimal_commas_are_refused_and_empty_fields_at_the_end_are_not(tmp_path: Path) -> None:
+    one = benchmark.problem("slide.stick")
+    path = write_states(tmp_path, one, one.exact(one.output_times))
+    head, *rows = path.read_text().splitlines()
+    path.write_text("\n".join([head, *(f"{row},," for row in rows)]))
+    assert benchmark.score(tmp_path, problems=one)[0].passed
+    path.write_text("\n".join([head, *(row.replace(".", ",") for row in rows)]))
+    with pytest.raises(ValueError, match=r"in slide\.stick\.csv line 3 must have 7 fields, got 14"):
+        benchmark.score(tmp_path)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "cp1252"])
+def test_unknown_columns_are_ignored(encoding: str, tmp_path: Path) -> None:
+    one = benchmark.problem("slide.stick")
+    path = write_states(tmp_path, one, one.exact(one.output_times))
+    path.write_text(path.read_text().replace("omega\n", "omega,Höhe\n"), encoding=encoding)
+    assert [score.problem for score in benchmark.score(tmp_path) if score.passed] == [one.id]
+
+
 def test_the_second_of_two_rows_at_one_time_is_scored(tmp_path: Path) -> None:
     """Two rows at one time are the states before and after a jump. Here the first one is wrong."""
     one = benchmark.problem("slide.stick")

@@ -110,6 +110,16 @@ def test_marks_follow_a_changed_file_of_impacts(
         assert course.mark("8.1", TRUE["8.1"](Given("8.1")))
 
 
+def test_decimal_commas_in_a_table_of_impacts_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = "\n".join((",".join(IMPACTS), ",".join(["0,5"] * 7)))
+    (tmp_path / "commas.csv").write_text(text)
+    monkeypatch.setenv("ROLLING_ELLIPSE_IMPACTS", str(tmp_path / "commas.csv"))
+    with pytest.raises(ValueError, match=r"^ROLLING_ELLIPSE_IMPACTS must .* 7 fields, got 14"):
+        course.measured_impacts()
+
+
 @pytest.mark.parametrize("task", ["8.1", "8.2", "8.3", "8.4", "8.5", "8.6"])
 @pytest.mark.parametrize("kept", ["zero", "none", "unknown", "one"])
 def test_tables_of_impacts_without_an_answer_are_rejected(

@@ -50,7 +50,7 @@ def test_lines_with_too_many_fields_or_without_a_name_are_refused() -> None:
     marked = course.mark_table(table(*rows, "B,7,3.1,1"))
     assert marked.points == {"A": 2, "B": 0}
     assert marked.refused == {
-        2: "line must have 4 fields, got 5",
+        2: "line 2 must have 4 fields, got 5; a decimal comma needs quotes or another delimiter",
         3: "student must be a name, got none",
         4: "student must be a name, got none",
         6: "seed must be 7, as in earlier lines, got none",
@@ -67,6 +67,45 @@ def test_tables_of_spreadsheets_are_read(mark: str, tmp_path: Path) -> None:
     (tmp_path / "answers.csv").write_bytes(content)
     for given in (tmp_path / "answers.csv", str(tmp_path / "answers.csv"), BytesIO(content)):
         assert course.mark_table(given).points == {"A, B": 2}
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252"])
+def test_students_with_accents_stay_apart(encoding: str, tmp_path: Path) -> None:
+    """Spreadsheets write cp1252, where two letters must not become the same placeholder."""
+    right = answer("1.1", (), 7)
+    text = f"{HEAD}\nJörg,7,1.1,{right}\nJürg,7,1.1,9\n"
+    (tmp_path / "answers.csv").write_text(text, encoding=encoding)
+    marks = {"Jörg": 2, "Jürg": 0}
+    assert course.mark_table(tmp_path / "answers.csv").points == marks
+    assert course.mark_table(BytesIO(text.encode(encoding))).points == marks
+    assert course.mark_table(StringIO("\ufeff" + text)).points == marks
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ('"Bob,7,1.1,1', "line 3 must have quotes in pairs and short fields, got ',' expected"),
+        ('Bob,"7"8,1.1,1', "line 3 must have quotes in pairs and short fields, got ',' expected"),
+        ("B" * 140_000 + ",7,1.1,1", "line 3 must have quotes in pairs and short fields, got fie"),
+        (f"Bob,{'7' * 5000},1.1,1", "seed must be a whole number, got '777"),
+        (f"Bob,{'7' * 640},1.1,1", "seed must be a whole number from 0 to 2^53, got 777"),
+        ("Bob,1_0,1.1,1", "seed must be a whole number, got '1_0'"),
+        ("Bob,7,1.1,1_0", "answer must be a number, got '1_0'"),
+    ],
+)
+def test_a_line_that_is_malformed_costs_no_other_line(line: str, why: str) -> None:
+    """A quoted field may have several lines; a line is counted where it begins."""
+    right = answer("1.1", (), 7)
+    rows = [f"Ada,7,1.1,{right}", line, f"Cid,7,1.1,{right},", f'"D\n",7,1.1,{right}', "E,7,1.1,x"]
+    marked = course.mark_table(table(*rows))
+    assert {name: n for name, n in marked.points.items() if n} == {"Ada": 2, "Cid": 2, "D": 2}
+    assert [*marked.refused] == [3, 7] and marked.refused[3].startswith(why)
+
+
+def test_a_quote_without_a_partner_costs_no_other_line() -> None:
+    marked = course.mark_table(table('"Bob,8,1.1,0.2', "Cy,9,1.1,0.2", "Di,10,1.1,0.3"))
+    said = "line 2 must have quotes in pairs and short fields, got unexpected end of data"
+    assert [*marked.points] == ["Cy", "Di"] and marked.refused == {2: said}
 
 
 @pytest.mark.parametrize("missing", HEAD.split(","))

@@ -97,6 +97,62 @@ def test_empty_cells_become_nan_and_repeated_names_get_numbers(tmp_path: Path) -
     assert read_track(path, t="0", x="1")[1].tolist() == [1.0, 3.0]
 
 
+@pytest.mark.parametrize("mark", ["\t", ";", ",", "|"])
+def test_rows_of_empty_cells_are_missing_frames(mark: str, tmp_path: Path) -> None:
+    """Blank lines are no rows, and empty cells beyond the names are no fields."""
+    path = tmp_path / "gap.txt"
+    path.write_text("x z|1 1|2 1  |   | ||5 1|".replace("|", "\n").replace(" ", mark))
+    t, x, z, _ = read_track(path, x="x", z="z", fps=10)
+    assert t == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4])
+    assert np.array_equal([x, z], [[1, 2, np.nan, np.nan, 5], [1, 1, np.nan, np.nan, 1]], True)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("theta\n0\n0,512\n0,498\n", "line 3 must have 1 fields, got 2; a decimal comma"),
+        ("t,x\n\n0,1\n\n1,2,3\n", "line 5 must have 2 fields, got 3"),
+        ("x y\n0 .1 .2\n", "line 2 must have 2 fields, got 3"),  # rows are numbered without a name
+        ("1;2\n1;2;3\n", "line 2 must have 2 fields, got 3"),
+        ('t,x\n0,1\n1,"2\n2,3\n3,4\n', "line 3 must have quotes in pairs .* end of data"),
+    ],
+)
+def test_lines_that_would_be_lost_are_refused_by_number(
+    text: str, said: str, tmp_path: Path
+) -> None:
+    (tmp_path / "lost.txt").write_text(text)
+    with pytest.raises(ValueError, match=f"^path must .*{said}"):
+        read_track(tmp_path / "lost.txt", x="x")
+
+
+def test_decimal_commas_in_a_table_with_commas_are_read_from_quotes(tmp_path: Path) -> None:
+    (tmp_path / "quoted.csv").write_text('frame,x\n0,"12,5"\n1,"12,9"\n')
+    _, x, _, _ = read_track(tmp_path / "quoted.csv", x="x", fps=60, decimal=",")
+    assert x.tolist() == [12.5, 12.9]
+
+
+@pytest.mark.parametrize(
+    "above", ["#Kinovea 0.8", "# 60", "60 frames", "rate,60", "mass A", '"mass A', "a,b,c,d", "t,m"]
+)
+def test_other_lines_above_the_names_are_skipped(above: str, tmp_path: Path) -> None:
+    (tmp_path / "named.csv").write_text(f"{above}\nt,x\n0,12\n1,13\n")
+    assert read_track(tmp_path / "named.csv", t="t", x="x")[1].tolist() == [12, 13]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252"])
+def test_names_of_columns_may_have_accents(encoding: str, tmp_path: Path) -> None:
+    (tmp_path / "high.csv").write_text("Höhe,x\n1,2\n3,4\n", encoding=encoding)
+    with open(tmp_path / "high.csv", "rb") as file:
+        for table in (tmp_path / "high.csv", file):
+            assert read_track(table, z="Höhe", fps=1)[2].tolist() == [1, 3]
+
+
+def test_digits_joined_by_an_underscore_are_text(tmp_path: Path) -> None:
+    (tmp_path / "text.csv").write_text("t,x\n0,1_0\n1,2\n")
+    with pytest.raises(TypeError, match=r"^x must be .*got \['1_0', 2.0\]"):
+        read_track(tmp_path / "text.csv", t="t", x="x")
+
+
 def test_a_scene_is_fitted_to_a_table_in_the_format_of_tracker() -> None:
     """The track begins 4 ms after the drop, and its origin is 12 mm below the ground."""
     track = read_track(DATA / "track_tracker.txt", t="t", x="x", z="y", theta="θ", degrees=True)

@@ -95,7 +95,10 @@ def _rows() -> Iterator[Row]:
     yield "results", written("", name="roll.rock.CSV")
     yield "results", written("", name="roll.rock.events.csv")
     yield "results", written(HEAD.encode("utf-16"))
-    yield "results", written(HEAD.encode() + b"0,0,1,0,3,0,0\n\xe9")
+    yield "results", written(HEAD.encode() + b"0,0,1,0,3,0,0\n\x81")  # neither UTF-8 nor cp1252
+    yield "results", written(HEAD + "0,0,1,0,3,0,0,5\n")
+    yield "results", written(HEAD + '0,0,1,0,3,0,"0\n')
+    yield "results", written(HEAD + "0,0,1,0,3,0,0\n", "kind,t\nSTICK,1,4\n")
     yield "results", written("x" * 200_000)
     yield "results", scored_pipe
     yield "folder", taken
@@ -127,7 +130,8 @@ def _rows() -> Iterator[Row]:
     yield "normal_force", scored(STATES, normal_force=T[1:])
     yield TypeError, scored(STATES, friction_force="x")
     yield "z", written("t,x\n0,0\n")
-    yield "x_dot", written(HEAD + "0,0,1,0,fast,0,0\n")
+    for word in ("fast", "1_0"):
+        yield "x_dot", written(HEAD + f"0,0,1,0,{word},0,0\n")
     yield "z", written(HEAD + "0,0,1,0,3,0,0\n0.01,0.03\n")
     yield "t", written(HEAD + "nan,0,1,0,3,0,0\n")
     for events in ("STICK,soon", "STICK,nan", "STICK,", "STICK"):

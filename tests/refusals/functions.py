@@ -171,7 +171,9 @@ REFUSALS: list[Row] = [
     *wrong(course.measured_impacts, {}, seed=SEEDS),
     *wrong(course.mark, {"task": "1.1", "answer": 1.0}, seed=SEEDS),
     *(("table", lambda _, head=head: course.mark_table(StringIO(head)))
-      for head in ("", "student,seed,task\n", "a b c")),
+      for head in ("", "student,seed,task\n", "a b c",
+                   'student,seed,task,"answer\n')),
+    ("table", lambda folder: course.mark_table(written(folder, b"student,seed,task,answer\n\x81"))),
     *wrong(course.mark_table, {}, table=[None, 3]),
     *wrong(course.mark, {"answer": 1.0}, task=["0.1", "3,2", 1.1, None, [1.1], ""]),
     *wrong(course.mark, {"task": "1.1"},
@@ -204,8 +206,10 @@ REFUSALS: list[Row] = [
            points=["abcd", tuple("abc"), tuple("abcd")]),
     *wrong(rl.read_track, {"t": "t", "x": "x"}, path=[3.5, None, "", "\0"]),
     *wrong(rl.read_track, {"path": ROOT / "README.md"}, delimiter=[", ", 3], decimal=["x", 1]),
-    ("path", lambda folder: rl.read_track(written(folder, "t,x\n0,1".encode("utf-16")), x="x")),
-    ("path", lambda folder: rl.read_track(written(folder, b"x\n" + 200_000 * b"1"), x="x")),
+    *(("path", lambda folder, text=text: rl.read_track(written(folder, text), x="x"))
+      for text in ("t,x\n0,1".encode("utf-16"), b"x\n" + 200_000 * b"1", b"", b"\n \n", b"x\n0,5\n",
+                   b't,x\n0,"1\n', b"t,x\n\x81,1")),
+    *wrong(rl.read_track, {"x": "x"}, path=[{}]),
     ("t, x, z and theta", lambda _: rl.read_track({"x": [9e307]}, x="x", fps=9.0, scale=1e300)),
     ("x", lambda folder: rl.read_track(written(folder, b"t,x\n"), t="t")),
     ("scene", lambda _: rl.fit_motion(**FILM | {"t": [1e20, 2e20, 3e20]})),

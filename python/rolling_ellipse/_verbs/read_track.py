@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable
 from contextlib import suppress
 from itertools import zip_longest
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, choice, flag, positive, readable, require, shown
+from .._ask.check import FloatArray, choice, flag, positive, require, shown
+from .._ask.tables import Row, double_in, lines_in, require_fields, rows_in
 from .._motion.inputs import distinct
 from .._motion.samples import vector
 
@@ -29,12 +28,13 @@ def read_track(
     """Return times, positions and angles from a tracker's table, as arguments for `fit_motion`.
 
     The column names are read from the last line above the numbers. Repeated names get the suffixes
-    ".1", ".2", .... Without such a line the names are "0", "1", .... Empty cells become NaN.
+    ".1", ".2", .... Without such a line the names are "0", "1", .... Empty cells become NaN; blank
+    lines are skipped.
 
     Parameters
     ----------
-    path : path, mapping or DataFrame
-        A text file (UTF-8), or columns by name, each of shape (n,).
+    path : path, file, mapping or DataFrame
+        Text (UTF-8 or cp1252), or columns by name, each of shape (n,).
     t, x, z, theta : str, optional
         Names of the columns of the time [s], of the position of the centre (to the right and up)
         and of the angle of the semi-axis a. Without `t`, the rows are consecutive frames of a film
@@ -65,8 +65,9 @@ def read_track(
     Raises
     ------
     ValueError
-        If a column is missing or has the wrong length, times do not increase, no position and no
-        angle is a number, the two points coincide, or `fps` or `scale` is not positive.
+        If a column is missing or has the wrong length, a line has more fields than there are names,
+        times do not increase, no position and no angle is a number, the two points coincide, or
+        `fps` or `scale` is not positive.
     TypeError
         If a column contains text; the message shows it.
     OSError
@@ -81,7 +82,9 @@ def read_track(
     array([0.155, 0.158, 0.161])
     """
     table = table_in("path", path, delimiter, decimal)
-    names, size = tuple(table), len(next(iter(table.values()), ()))
+    if not table:
+        raise ValueError(f"path must name a table with columns, got none in {shown(path)}")
+    names, size = tuple(table), len(next(iter(table.values())))
 
     def column(argument: str, name: Any) -> FloatArray:
         some = [np.nan] * size if name is None else table[choice(argument, name, names)]
@@ -116,26 +119,23 @@ def table_in(name: str, path: Any, delimiter: Any = None, decimal: Any = None) -
     """Return the columns of a table by their names; errors use `name` for the argument `path`."""
     if hasattr(path, "keys"):
         return {str(key): path[key] for key in path}
-    text = Path(readable(name, path)).read_text(encoding="utf-8-sig", errors="replace")
-    lines = [line.strip(" #") for line in text.splitlines() if line.strip()] or [""]
-    mark = delimiter or next((each for each in _MARKS if each in lines[-1]), " ")
+    text = lines_in(name, path)
+    last = next((line for line in reversed(text) if line.strip()), "")
+    mark = choice("delimiter", delimiter or next((m for m in _MARKS if m in last), " "), _MARKS)
     point = choice("decimal", decimal or ("." if mark == "," else ","), (",", "."))
-    cells = csv.reader(lines, delimiter=choice("delimiter", mark, _MARKS), skipinitialspace=True)
-    try:
-        if "\0" in text:
-            raise csv.Error("it contains null bytes, as UTF-16 does")
-        rows = [[_cell(cell, point) for cell in row] for row in cells]
-    except csv.Error as error:
-        raise ValueError(f"{name} must name a text table, got {str(path)!r}: {error}") from None
-    # a header line has text and no numbers; NaN is an empty cell
-    *_, first = 0, *(k for k, r in enumerate(rows, 1) if {type(c) for c in r if c == c} == {str})
-    heads = [*map(str, rows[first - 1] if first else range(len(rows[0])))]
+    rows = [*rows_in([line.strip(" #") for line in text], mark)] or [Row(1, [])]
+    cells = [[_cell(field, point) for field in row.fields] for row in rows]
+    kinds = [{type(c) for c in each if c == c} for each in cells]  # NaN is an empty cell
+    # the names of the columns are in the last line with text and no numbers
+    *_, first = 0, *(k for k, kind in enumerate(kinds, 1) if kind == {str})
+    heads = [*map(str, cells[first - 1] if first else range(len(cells[0])))]
+    require_fields(name, rows[first:], len(heads), path)
     names = [f"{n}.{heads[:k].count(n)}" if n in heads[:k] else n for k, n in enumerate(heads)]
-    return {str(n): c for n, *c in zip_longest(names, *rows[first:], fillvalue=np.nan) if n == n}
+    return {str(n): c for n, *c in zip_longest(names, *cells[first:], fillvalue=np.nan) if n == n}
 
 
 def _cell(text: str, point: str) -> float | str:
     """Return the number in a cell, NaN for an empty cell, or the text of any other cell."""
     with suppress(ValueError):
-        return np.nan if text.strip().lower() in _MISSING else float(text.replace(point, "."))
-    return text.strip()
+        return np.nan if text.lower() in _MISSING else double_in(text.replace(point, "."))
+    return text

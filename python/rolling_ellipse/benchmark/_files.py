@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from .._ask.check import choice, file_name, readable
+from .._ask.check import choice, file_name
+from .._ask.tables import double_in, lines_in, require_fields, rows_in
 from .._motion.export.new_files import write_new
 from ._problem import COLUMNS, FOLDER, STATE, Problem, problems, scored_ones
 from ._results import KINDS, Result
@@ -66,27 +65,17 @@ def _empty_table(one: Problem) -> str:
     return "\n".join(rows) + "\n"
 
 
-class _Row(NamedTuple):
-    """The entries of a row by column, with its problem and location for messages."""
-
-    problem: str
-    place: str
-    entries: dict[str, str]
-
-    def number(self, name: str) -> float:
-        """Return a number; only forces may be empty, which means NaN."""
-        text = self.entries.get(name, "")
-        if not text and name in COLUMNS[7:]:
-            return math.nan
-        try:
-            value = float(text)
-        except ValueError:
-            raise ValueError(
-                f"{name} of {self.problem} must be a number, got {text!r} in {self.place}"
-            ) from None
-        if name == "t" and not math.isfinite(value):
-            raise ValueError(f"t of {self.problem} must be finite, got {value} in {self.place}")
-        return value
+def _number(problem: Problem, place: str, entries: dict[str, str], name: str) -> float:
+    """Return the number in a column; only forces may be empty, which means NaN."""
+    text = entries.get(name, "")
+    if not text and name in COLUMNS[7:]:
+        return math.nan
+    with suppress(ValueError):
+        value = double_in(text)
+        if math.isfinite(value) or name != "t":
+            return value
+    kind = "finite number" if name == "t" else "number"
+    raise ValueError(f"{name} of {problem.id} must be a {kind}, got {text!r} in {place}")
 
 
 def read_folder(results: Any) -> dict[str, Result]:
@@ -125,13 +114,13 @@ def read(problem: Problem, path: Path) -> Result:
     Raises
     ------
     ValueError
-        If a file is not a table of UTF-8 text, a column is missing, or an entry is not a number;
-        the message names problem, column and row.
+        If a file is not a table, a row has more fields than the first, a column is missing, or an
+        entry is not a number; the message names problem, column and row.
     """
     records: list[list[float]] = []
-    for row in _rows(problem, path, COLUMNS[:7]) or []:
-        if row.entries["t"] and any(row.entries[name] for name in STATE):
-            numbers = [row.number(name) for name in COLUMNS]
+    for place, entries in _rows(problem, path, COLUMNS[:7]) or []:
+        if entries["t"] and any(entries[name] for name in STATE):
+            numbers = [_number(problem, place, entries, name) for name in COLUMNS]
             if records and records[-1][0] == numbers[0]:
                 records.pop()
             records.append(numbers)
@@ -139,32 +128,21 @@ def read(problem: Problem, path: Path) -> Result:
     listed, kind = path.with_name(f"{problem.id}.events.csv"), f"kind of {problem.id}"
     events = None
     if listed.exists() and (rows := _rows(problem, listed, ("kind", "t"))) is not None:
-        events = [(choice(kind, row.entries["kind"], KINDS), row.number("t")) for row in rows]
+        events = [(choice(kind, e["kind"], KINDS), _number(problem, at, e, "t")) for at, e in rows]
     return Result(columns[1:7].T, columns[0], events, *columns[7:])
 
 
-def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] | None:
-    """Return the non-blank rows below the names of columns, or None if the file is blank.
+def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[tuple[str, Any]] | None:
+    """Return place and entries of the rows below the names of columns, or None for a blank file.
 
     Of two columns with the same name, the first is used.
     """
-    try:
-        text = Path(readable("results", path)).read_bytes().decode("utf-8-sig")
-        lines = csv.reader(io.StringIO(text, newline=""), strict=True)
-        rows = [(lines.line_num, row) for row in lines if any(entry.strip() for entry in row)]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise ValueError(
-            f"results must be tables of UTF-8 text with commas, got {path.name!r}: {error}"
-        ) from None
+    rows = [row for row in rows_in(lines_in("results", path), ",") if row.fault or any(row.fields)]
     if not rows:
         return None
-    names = [SYNONYMS.get(head.strip(), head.strip()) for head in rows[0][1]]
+    names = [SYNONYMS.get(head, head) for head in rows[0].fields]
+    require_fields("results", rows, len(names), path.name)
     for name in columns:
         if name not in names:
             raise ValueError(f"{name} of {problem.id} must be a column of {path.name}, got {names}")
-    records = []
-    for line, row in rows[1:]:
-        texts = [*map(str.strip, row), *[""] * len(names)]  # a row may be shorter than the first
-        entries = {name: texts[names.index(name)] for name in names}
-        records.append(_Row(problem.id, f"row {line} of {path.name}", entries))
-    return records
+    return [(f"row {row.line} of {path.name}", row.entries(names)) for row in rows[1:]]

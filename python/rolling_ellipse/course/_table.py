@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import re
 from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import IO, Any
 
-from .._ask.check import readable
+from .._ask.tables import lines_in, require_fields, rows_in
 from ._marks import Mark, mark
 from ._tasks import DATA
 
@@ -53,17 +51,18 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     Parameters
     ----------
     table : path or file
-        CSV with the columns student, seed, task and answer in any order, separated by commas,
-        semicolons or tabs; other columns are ignored. An empty seed means the printed numbers. The
-        decimal separator may be a comma. Of several answers to the same task, the last counts.
+        CSV (UTF-8 or cp1252) with the columns student, seed, task and answer in any order,
+        separated by commas, semicolons or tabs; other columns are ignored. An empty seed means the
+        printed numbers. The decimal separator may be a comma. Of several answers to the same task,
+        the last counts.
 
     Raises
     ------
     ValueError
-        If a column is missing. Lines that cannot be marked are reported in `refused` instead: the
-        line has more fields than the head, the student has no name, the seed is not a whole number
-        or not that of the student's earlier lines, the task does not exist, or the answer is not a
-        number.
+        If a column is missing. Lines that cannot be marked are reported in
+        `refused` instead: the line has more fields than the head or a single quote, the student has
+        no name, the seed is not a whole number or not that of the student's earlier lines, the task
+        does not exist, or the answer is not a number.
     TypeError
         If `table` is neither a path nor a file.
     OSError
@@ -77,28 +76,21 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     >>> marked.points, marked.mistakes
     ({'Ada': 2, 'Bob': 1}, {'none': 1, 'degrees or angle': 1})
     """
-    if hasattr(table, "read"):
-        text = table.read()
-        text = text.decode("utf-8-sig") if isinstance(text, bytes) else text
-    else:
-        text = Path(readable("table", table)).read_text("utf-8-sig", errors="replace")
-    lines = text.splitlines()
-    head = lines[0] if lines else ""
-    reader = csv.DictReader(lines, delimiter=max("\t;,", key=head.count))
-    names = [(name or "").strip().lower() for name in reader.fieldnames or []]
-    if missing := [name for name in COLUMNS if name not in names]:
-        raise ValueError(f"table must have the column {missing[0]}, got {', '.join(names)}")
-    reader.fieldnames = names
+    lines = lines_in("table", table) or [""]
+    rows = [*rows_in(lines, max("\t;,", key=lines[0].count))]
+    names = [name.lower() for row in rows[:1] for name in row.fields]
+    require_fields("table", rows[:1], len(names), table)
+    for name in COLUMNS:
+        if name not in names:
+            raise ValueError(f"table must have the column {name}, got {names}")
     seeds: dict[str, int | None] = {}
     marks: dict[str, dict[str, Mark]] = {}
     refused: dict[int, str] = {}
-    for row in reader:
-        student, word, task, answer = ((row[name] or "").strip() for name in COLUMNS)
+    for row in rows[1:]:
+        student, word, task, answer = (row.entries(names)[name] for name in COLUMNS)
         of = marks.setdefault(student, {}) if student else {}
-        why = "" if student else "student must be a name, got none"
-        if any(extra := row.get(None) or []):
-            why = f"line must have {len(names)} fields, got {len(names) + len(extra)}"
-        seed: Any = int(word) if re.fullmatch("[+-]?[0-9]+", word) else word or None
+        why = row.wrong(len(names)) or ("" if student else "student must be a name, got none")
+        seed: Any = int(word) if re.fullmatch("[+-]?[0-9]{1,640}", word) else word or None
         try:
             given = mark(task, number_in(answer), seed=seed)
         except (ValueError, TypeError) as error:
@@ -107,7 +99,7 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
             own = "none" if first is None else first
             why = f"seed must be {own}, as in earlier lines, got {word or 'none'}"
         if why:
-            refused[reader.line_num] = why
+            refused[row.line] = why
         else:
             of[task] = given
     points = {student: sum(m.points for m in each.values()) for student, each in marks.items()}
