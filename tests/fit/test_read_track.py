@@ -115,6 +115,10 @@ def test_rows_of_empty_cells_are_missing_frames(mark: str, tmp_path: Path) -> No
         ("x y\n0 .1 .2\n", "line 2 must have 2 fields, got 3"),  # rows are numbered without a name
         ("1;2\n1;2;3\n", "line 2 must have 2 fields, got 3"),
         ('t,x\n0,1\n1,"2\n2,3\n3,4\n', "line 3 must have quotes in pairs .* end of data"),
+        ("t,x\n0,1\n\nt,x\n5,1\n", "one line of names, above all numbers, got line 1 .* line 4"),
+        ("a\n1,2\n\nt,x\n5,1\n", "got line 2 of .* above line 4"),
+        ("t,x\n0,1\n1,2\nend\n", "got line 2 of .* above line 4"),
+        ("t,x,mode\n0,1,ROLL\nt,x,mode\n1,2,ROLL\n", "got line 1 of .* above line 3"),
     ],
 )
 def test_lines_that_would_be_lost_are_refused_by_number(

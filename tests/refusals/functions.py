@@ -208,7 +208,7 @@ REFUSALS: list[Row] = [
     *wrong(rl.read_track, {"path": ROOT / "README.md"}, delimiter=[", ", 3], decimal=["x", 1]),
     *(("path", lambda folder, text=text: rl.read_track(written(folder, text), x="x"))
       for text in ("t,x\n0,1".encode("utf-16"), b"x\n" + 200_000 * b"1", b"", b"\n \n", b"x\n0,5\n",
-                   b't,x\n0,"1\n', b"t,x\n\x81,1")),
+                   b"t,x\n0,1\nt,x\n1,2\n", b't,x\n0,"1\n', b"t,x\n\x81,1")),
     *wrong(rl.read_track, {"x": "x"}, path=[{}]),
     ("t, x, z and theta", lambda _: rl.read_track({"x": [9e307]}, x="x", fps=9.0, scale=1e300)),
     ("x", lambda folder: rl.read_track(written(folder, b"t,x\n"), t="t")),

@@ -66,8 +66,8 @@ def read_track(
     ------
     ValueError
         If a column is missing or has the wrong length, a line has more fields than there are names,
-        times do not increase, no position and no angle is a number, the two points coincide, or
-        `fps` or `scale` is not positive.
+        numbers are above the names, times do not increase, no position and no angle is a number,
+        the two points coincide, or `fps` or `scale` is not positive.
     TypeError
         If a column contains text; the message shows it.
     OSError
@@ -128,6 +128,11 @@ def table_in(name: str, path: Any, delimiter: Any = None, decimal: Any = None) -
     kinds = [{type(c) for c in each if c == c} for each in cells]  # NaN is an empty cell
     # the names of the columns are in the last line with text and no numbers
     *_, first = 0, *(k for k, kind in enumerate(kinds, 1) if kind == {str})
+    for row, kind in zip(rows[:first][:-1], kinds, strict=False):
+        is_data = kind == {float} and not text[row.line - 1].lstrip().startswith("#")
+        if is_data or row.fields == rows[first - 1].fields:
+            below = f"got line {row.line} of {path} above line {rows[first - 1].line}"
+            raise ValueError(f"{name} must have one line of names, above all numbers, {below}")
     heads = [*map(str, cells[first - 1] if first else range(len(cells[0])))]
     require_fields(name, rows[first:], len(heads), path)
     names = [f"{n}.{heads[:k].count(n)}" if n in heads[:k] else n for k, n in enumerate(heads)]
