@@ -67,10 +67,13 @@ def test_decimal_commas_are_refused_and_empty_fields_at_the_end_are_not(tmp_path
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "cp1252"])
-def test_unknown_columns_are_ignored(encoding: str, tmp_path: Path) -> None:
+def test_hidden_files_and_unknown_columns_are_ignored(encoding: str, tmp_path: Path) -> None:
+    """macOS writes a hidden companion of each file. A column may have any name."""
     one = benchmark.problem("slide.stick")
     path = write_states(tmp_path, one, one.exact(one.output_times))
     path.write_text(path.read_text().replace("omega\n", "omega,Höhe\n"), encoding=encoding)
+    for name in ("._slide.stick.csv", ".roll.rock.csv", ".slide.stick.events.csv"):
+        (tmp_path / name).write_bytes(b"\0\5\26\7")
     assert [score.problem for score in benchmark.score(tmp_path) if score.passed] == [one.id]
 
 

@@ -58,6 +58,16 @@ def scored_pipe(folder: Path) -> Any:
     return benchmark.score(folder)
 
 
+def folder_called(name: str) -> Callable[[Path], Any]:
+    """Score a result beside a folder with the name of a table."""
+
+    def call(folder: Path) -> Any:
+        (folder / name).mkdir()
+        return written(HEAD + "0,0,1,0,3,0,0\n")(folder)
+
+    return call
+
+
 def taken(folder: Path) -> Any:
     (folder / "README.txt").write_text("mine")
     return benchmark.export(folder)
@@ -132,6 +142,8 @@ def _rows() -> Iterator[Row]:
     yield "z", written("t,x\n0,0\n")
     for word in ("fast", "1_0"):
         yield "x_dot", written(HEAD + f"0,0,1,0,{word},0,0\n")
+    for name in ("hit.bounce.csv", "slide.stick.events.csv"):
+        yield "results", folder_called(name)
     yield "z", written(HEAD + "0,0,1,0,3,0,0\n0.01,0.03\n")
     yield "t", written(HEAD + "nan,0,1,0,3,0,0\n")
     for events in ("STICK,soon", "STICK,nan", "STICK,", "STICK"):

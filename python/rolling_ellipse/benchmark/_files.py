@@ -79,7 +79,7 @@ def _number(problem: Problem, place: str, entries: dict[str, str], name: str) ->
 
 
 def read_folder(results: Any) -> dict[str, Result]:
-    """Return the results in a folder; a table without states counts as no result.
+    """Return the results in a folder; hidden files and tables without states count as no result.
 
     Raises
     ------
@@ -91,9 +91,7 @@ def read_folder(results: Any) -> dict[str, Result]:
         raise ValueError(f"results must be an existing folder, got {str(folder)!r}")
     known = {one.id: one for one in scored_ones(None)}
     by_problem = {}
-    for path in sorted(folder.iterdir()):
-        if path.suffix.lower() != ".csv":
-            continue
+    for path in sorted(folder.glob("[!.]*.[cC][sS][vV]")):
         name = path.name.removesuffix(".csv").removesuffix(".events")
         one = known[choice("results", name, tuple(known))]
         table = folder / f"{name}.csv"
@@ -137,6 +135,8 @@ def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[tuple[
 
     Of two columns with the same name, the first is used.
     """
+    if path.is_dir():
+        raise ValueError(f"results must be files, got the folder {path.name!r}")
     rows = [row for row in rows_in(lines_in("results", path), ",") if row.fault or any(row.fields)]
     if not rows:
         return None
