@@ -108,6 +108,12 @@ def test_a_quote_without_a_partner_costs_no_other_line() -> None:
     assert [*marked.points] == ["Cy", "Di"] and marked.refused == {2: said}
 
 
+@pytest.mark.parametrize("name", HEAD.split(","))
+def test_a_column_that_occurs_twice_is_named(name: str) -> None:
+    with pytest.raises(ValueError, match=f"table must have the column {name}, got 2 in"):
+        course.mark_table(table("Ada,7,1.1,0.2,0.9", head=f"{HEAD},{name.title()}"))
+
+
 @pytest.mark.parametrize("missing", HEAD.split(","))
 def test_a_missing_column_is_named(missing: str) -> None:
     head = ",".join(name for name in HEAD.split(",") if name != missing)

@@ -171,7 +171,7 @@ REFUSALS: list[Row] = [
     *wrong(course.measured_impacts, {}, seed=SEEDS),
     *wrong(course.mark, {"task": "1.1", "answer": 1.0}, seed=SEEDS),
     *(("table", lambda _, head=head: course.mark_table(StringIO(head)))
-      for head in ("", "student,seed,task\n", "a b c",
+      for head in ("", "student,seed,task\n", "a b c", "student,seed,task,answer,Answer\n",
                    'student,seed,task,"answer\n')),
     ("table", lambda folder: course.mark_table(written(folder, b"student,seed,task,answer\n\x81"))),
     *wrong(course.mark_table, {}, table=[None, 3]),

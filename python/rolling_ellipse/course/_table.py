@@ -59,7 +59,7 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     Raises
     ------
     ValueError
-        If a column is missing. Lines that cannot be marked are reported in
+        If a column is missing or occurs twice. Lines that cannot be marked are reported in
         `refused` instead: the line has more fields than the head or a single quote, the student has
         no name, the seed is not a whole number or not that of the student's earlier lines, the task
         does not exist, or the answer is not a number.
@@ -81,8 +81,8 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     names = [name.lower() for row in rows[:1] for name in row.fields]
     require_fields("table", rows[:1], len(names), table)
     for name in COLUMNS:
-        if name not in names:
-            raise ValueError(f"table must have the column {name}, got {names}")
+        if (count := names.count(name)) != 1:
+            raise ValueError(f"table must have the column {name}, got {count} in {names}")
     seeds: dict[str, int | None] = {}
     marks: dict[str, dict[str, Mark]] = {}
     refused: dict[int, str] = {}
