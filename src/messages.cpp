@@ -20,6 +20,18 @@ std::string why_not_rolling(const Scene& scene, const State& start) {
     return {};
 }
 
+std::string why_invalid(Validity validity, double t) {
+    if (validity == Validity::no_proof) {
+        return "the start violates the constraints, unlike any body on the ground";
+    }
+    const char* const rest =
+        validity == Validity::edge
+            ? "; there the law of contact is met only to within rounding errors, which hide "
+              "whether rolling remains valid"
+            : " only; after it the motion obeys the rolling equation, but not the laws of contact";
+    return "rolling is valid until t = " + brief(t) + " s" + rest;
+}
+
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end) {
     if (ending == Ending::completed) return {};  // saves the cost of the text below
     const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
@@ -27,6 +39,7 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
         settings.model == Model::contact;  // the contact model has no error-controlled steps
     switch (ending) {
         case Ending::completed:
+        case Ending::validity_lost:  // see why_invalid
             break;
         case Ending::max_steps:
             return "max_steps = " + std::to_string(settings.max_steps) + " was reached" + place +
@@ -51,10 +64,6 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
             return "two motions of the sliding body are possible" + place +
                    ": it flies off, or its own friction presses it against the ground (Painleve), "
                    "and rigid mechanics does not choose";
-        case Ending::validity_lost:
-            return "rolling is valid until t = " + brief(t) +
-                   " s only; after it the motion obeys the rolling equation, but not the laws of "
-                   "contact";
         case Ending::never:
             return "the motion never stops as asked: from t = " + brief(t) +
                    " s on it is proved to have no further event";

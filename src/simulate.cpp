@@ -67,11 +67,11 @@ bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings
            !may_hold_for_ever(scene, from.initial.state);
 }
 
-void end_validity(double t, double t_end, Solution& solution) {
+void end_validity(Validity validity, double t, double t_end, Solution& solution) {
     solution.valid_until = t;
     if (solution.ending == Ending::completed && t < t_end) {
         solution.ending = Ending::validity_lost;
-        solution.message = why_ended(Ending::validity_lost, {}, t, t_end);
+        solution.message = why_invalid(validity, t);
     }
 }
 
@@ -80,9 +80,10 @@ void judge_by_proof(const Beginning& from, const EndOfRolling& end, double t_end
                     Solution& solution) {
     if (std::isnan(end.time)) solution.valid_until = end.time;
     if (!end.angle) return;
-    if (from.on_slope) return end_validity(end.time, t_end, solution);
     const auto* flow = std::get_if<Apart<RollingFlow>>(&solution.motion.segments.front().law);
-    end_validity(time_of_end(flow ? **flow : rolling_flow(*from.rolling), end), t_end, solution);
+    const double t =
+        from.on_slope ? end.time : time_of_end(flow ? **flow : rolling_flow(*from.rolling), end);
+    end_validity(end.validity, t, t_end, solution);
 }
 
 Integration<Motion> exact_rolling(const Scene& scene, const Beginning& from, double t_end) {
@@ -196,10 +197,7 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
         solution(as_motion(scene, integrate_multipliers(scene, coordinate_start(start), settings,
                                                         t_end, checkpoint)),
                  settings, t_end);
-    end_validity(0.0, t_end, result);
-    if (result.ending == Ending::validity_lost) {
-        result.message = "the start violates the constraints, unlike any body on the ground";
-    }
+    end_validity(Validity::no_proof, 0.0, t_end, result);
     return result;
 }
 

@@ -62,8 +62,12 @@ std::string brief(double value);
 // A sentence that says why a body does not roll at its start; empty if it rolls.
 std::string why_not_rolling(const Scene& scene, const State& start);
 
+// A sentence that says why the validity of rolling is unknown or lost from the time t on: rolling
+// is invalid, at the edge of its validity, or (no_proof) it starts off the constraints.
+std::string why_invalid(Validity validity, double t);
+
 // A sentence that says why a motion ended early, at t, and suggests a remedy; empty for a complete
-// motion.
+// motion, and for one that only loses its validity.
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end);
 
 }  // namespace rolling_ellipse

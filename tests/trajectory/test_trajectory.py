@@ -72,6 +72,21 @@ ENDING = {
 }
 
 
+def test_the_message_says_whether_rolling_fails_or_is_at_the_edge() -> None:
+    scene = Scene(2.0, 1.0, theta=1.0, omega=2.2)
+    enough = rl.required_friction(scene)
+    for share, says in (
+        (1 - 1e-9, "only; after it .* not the laws"),
+        (1.0, "only to within round"),
+    ):
+        with pytest.warns(
+            ValidityWarning, match=f"rolling is valid until t = .* s.*{says}"
+        ) as told:
+            motion = simulate(scene.replace(friction=share * enough), 6.0, model="rolling")
+        assert motion.status is Status.VALIDITY_LOST and motion.message == str(told[0].message)
+        assert ("laws of contact" in motion.message) == (share < 1)
+
+
 @pytest.mark.parametrize("scene", ENDING.values(), ids=ENDING)
 def test_rolling_is_valid_until_its_law_fails(scene: Scene) -> None:
     """At valid_until a law fails: |F| = friction N, or N = 0. Before this time the ground can hold
