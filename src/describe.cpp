@@ -1,9 +1,12 @@
 #include "describe.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rolling_ellipse {
 namespace {
+
+using Events = std::vector<Event>;
 
 void append(Sentences& to, const Sentences& more) { to.insert(to.end(), more.begin(), more.end()); }
 
@@ -20,36 +23,35 @@ Sentence effect_of(const Scene& scene, const Start& start) {
     return {"slides_off", {along, up, {"mu", scene.friction}}};
 }
 
-// The outcome of rolling that an event signals.
-std::optional<Outcome> outcome_of(EventKind kind) {
-    if (kind == EventKind::slip) return Outcome::slips;
-    if (kind == EventKind::lift_off) return Outcome::loses_contact;
-    if (kind == EventKind::jam) return Outcome::jams;
-    return {};
+// How an event ends rolling or sliding: the body slips or leaves the ground. Empty for all other
+// events. Rolling never jams, see outcome/outcome.cpp.
+std::optional<Sentence> end_at(const Event& event) {
+    const bool rolled = event.before.mode == Mode::rolling;
+    const std::pair t{"t", event.t};
+    if (event.kind == EventKind::slip && rolled) return Sentence{"SLIPS_at", {t}};
+    if (event.kind != EventKind::lift_off) return {};
+    return Sentence{rolled ? "LOSES_CONTACT_at" : "SLIDING_LOSES_CONTACT_at", {t}};
+}
+
+Sentence rest_at(const Scene& scene, const Event& event) {
+    if (scene.slope != 0 || scene.a == scene.b) return {"rests_at", {{"t", event.t}}};
+    const double askew = std::abs(quarter_view({event.after.state.theta, 0.0}).rest.high);
+    return {"rests_askew", {{"t", event.t}, {"angle", askew * (180 / pi)}}};
 }
 
 // How a body with rolling resistance starts to move, and the first event that ends its rolling or
-// brings it to rest.
-Sentences course_of(const Scene& scene, const Solution& solution, const Start& start,
-                    double begin) {
-    Sentences found{{name(start.next.mode) + "_starts", {}}};
-    for (const auto& [t, kind, before, after] : solution.motion.events) {
-        if (t < begin) continue;
-        if (kind == EventKind::blow) break;
-        if (kind == EventKind::rest) {
-            const double askew =
-                std::abs(quarter_view({after.state.theta, 0.0}).rest.high) * (180 / pi);
-            const bool has_angle = scene.slope == 0 && scene.a != scene.b;
-            found.push_back(has_angle ? Sentence{"rests_askew", {{"t", t}, {"angle", askew}}}
-                                      : Sentence{"rests_at", {{"t", t}}});
-            break;
-        }
-        const auto end = outcome_of(kind);
-        if (!end || t == begin) continue;
-        found.push_back({name(*end) + "_at", {{"t", t}}});
-        break;
+// sliding or brings it to rest.
+Sentences course_of(const Scene& scene, const Events& events, const Start& start, double begin) {
+    const Mode first = start.next.mode;
+    const Sentence starts{name(first) + "_starts", {}};
+    for (const Event& each : events) {
+        const bool rests = each.kind == EventKind::rest;
+        const auto end = rests ? rest_at(scene, each) : end_at(each);
+        if (!end || each.t < begin || (each.t == begin && !rests)) continue;
+        if (first == (rests ? Mode::rest : each.before.mode)) return {*end};
+        return {starts, *end};
     }
-    return found;
+    return {starts};
 }
 
 // Explains why the motion differs from what the initial velocities suggest; empty if it does not.
@@ -75,8 +77,9 @@ Sentence proof_of(const Scene& scene, const Start& start, const Certificate& pro
         return {"ends_grip", {angle, {"mu", scene.friction}}};
     }
     if (start.next.mode == Mode::rest) return {"stays", {{"N", *normal}, {"ratio", *needed}}};
-    const bool known = proof.smallest_normal_force_angle && *needed < infinity;
-    if (!known || proof.end.validity != Validity::valid) return {"rolls", {}};
+    const bool is_valid = proof.end.validity == Validity::valid;
+    if (is_valid && !proof.smallest_normal_force_angle) return {"runs", {}};
+    if (!is_valid || *needed == infinity) return {"rolls", {}};
     return {"proved", {{"N", *normal}, angle, {"ratio", *needed}}};
 }
 
@@ -96,35 +99,29 @@ Sentences proof_of_rolling(const Scene& scene, const Start& start, const Certifi
     return found;
 }
 
-// The first event after which a body that starts in the air is on the ground; null if there is
-// none.
-const Event* landing_of(const Solution& solution) {
-    for (const Event& each : solution.motion.events) {
+// The event with which a body that starts in the air lands; null if it does not land.
+const Event* landing_of(const Events& events) {
+    for (const Event& each : events) {
         if (each.after.state.mode != Mode::flight) return &each;
     }
     return nullptr;
 }
 
 // How and, if known, when the rolling that starts at the time `begin` ends.
-Sentence end_of_rolling(const Scene& scene, const Solution& solution, Outcome first, double begin) {
-    const auto at = [](Outcome end, double t) { return Sentence{name(end) + "_at", {{"t", t}}}; };
-    for (const Event& each : solution.motion.events) {
-        if (each.kind == EventKind::blow) break;
-        const auto end = outcome_of(each.kind);
-        if (end && each.t > begin) return at(first == Outcome::jams ? first : *end, each.t);
+Sentence end_of_rolling(const Scene& scene, const Solution& solution, const Events& events,
+                        Outcome first, double begin, Validity validity) {
+    for (const Event& each : events) {
+        const auto end = end_at(each);
+        if (end && each.t > begin) return *end;
     }
-    const bool ends =
-        first == Outcome::slips || first == Outcome::loses_contact || first == Outcome::jams;
-    if (solution.model != Model::contact && first != Outcome::edge) {
-        const double until = valid_until(scene, solution);
-        if (until < infinity) return at(ends ? first : Outcome::slips, until);
+    const bool ends = first == Outcome::slips || first == Outcome::loses_contact;
+    const bool is_invalid = solution.model != Model::contact && validity == Validity::invalid;
+    const double until =
+        is_invalid && first != Outcome::edge ? valid_until(scene, solution) : infinity;
+    if (until < infinity) {
+        return {name(ends ? first : after_rolling(scene, until)) + "_at", {{"t", until}}};
     }
     return {name(first) + (ends ? "_later" : "_now"), {}};
-}
-
-const char* key_of_early_end(Ending ending) {
-    if (ending == Ending::jammed) return "jammed";
-    return ending == Ending::undetermined ? "undetermined" : "given_up";
 }
 
 }  // namespace
@@ -133,48 +130,54 @@ Start::Start(const Scene& scene)
     : InitialState(initial_state(scene)), next(first_continuation(scene, state)) {}
 
 Description describe(const Scene& scene, const Solution& solution, const Checkpoint& checkpoint) {
+    const Events& all = solution.motion.events;
+    const auto blow = std::find_if(
+        all.begin(), all.end(), [](const Event& event) { return event.kind == EventKind::blow; });
+    const Events events(all.begin(), blow);  // the description is of the motion up to a blow
     Start start(scene);
     Description found{{}, {}, {effect_of(scene, start)}};
     Scene ground = scene;
     double landed = 0.0;
     const bool flies = !start.touching;
-    if (flies) {
-        const Event* const landing = landing_of(solution);
-        if (landing == nullptr) {
-            const bool bounces = !solution.motion.events.empty();
-            found.headline.push_back({bounces ? "bounces" : "flies_on", {}});
-            return found;
-        }
+    const Event* const landing = flies ? landing_of(events) : nullptr;
+    if (landing != nullptr) {
         landed = landing->t;
         found.headline.push_back({"lands", {{"t", landed}}});
         ground = reached(scene, landing->after.state);
         start = Start(ground);
     }
     append(found.reasons, surprise(ground, start));
-    if (scene.rolling_resistance > 0) {
-        append(found.headline, course_of(scene, solution, start, landed));
-        return found;
-    }
-    const Outcome first = outcome(ground, checkpoint);
-    found.first = first;
-    if (start.holds()) {
-        found.headline.push_back(end_of_rolling(scene, solution, first, landed));
-        append(found.reasons, proof_of_rolling(ground, start, certify(ground)));
+    const bool jams = start.next.paradox != Painleve::determined;
+    const bool resisted = scene.rolling_resistance > 0;
+    if (flies && landing == nullptr) {
+        found.headline.push_back({events.empty() ? "flies_on" : "bounces", {}});
+    } else if (resisted && !jams) {
+        append(found.headline, course_of(scene, events, start, landed));
     } else {
-        found.headline.push_back({name(first) + (flies ? "_then" : "_now"), {}});
+        const Outcome first = resisted ? Outcome::jams : outcome(ground, checkpoint);
+        if (!resisted) found.first = first;
+        if (start.holds()) {
+            const Certificate proof = certify(ground);
+            found.headline.push_back(
+                end_of_rolling(scene, solution, events, first, landed, proof.end.validity));
+            append(found.reasons, proof_of_rolling(ground, start, proof));
+        } else {
+            found.headline.push_back({name(first) + (flies ? "_then" : "_now"), {}});
+        }
     }
+    if (blow != all.end()) found.reasons.push_back({"until_the_blow", {{"t", blow->t}}});
     const Ending ending = solution.ending;
     const double end = solution.followed_until;
     const bool is_early = ending != Ending::completed && ending != Ending::validity_lost;
-    if (is_early && (first != Outcome::jams || end > landed)) {
-        found.reasons.push_back({key_of_early_end(ending), {{"t", end}}});
+    if (is_early && (!jams || end > landed)) {
+        found.reasons.push_back({name(ending) + "_at", {{"t", end}}});
     }
     return found;
 }
 
 std::optional<Outcome> outcome_after_landing(const Scene& scene, const Solution& solution,
                                              const Checkpoint& checkpoint) {
-    const Event* const landing = landing_of(solution);
+    const Event* const landing = landing_of(solution.motion.events);
     if (landing == nullptr) return {};
     return outcome(reached(scene, landing->after.state), checkpoint);
 }

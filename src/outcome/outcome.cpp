@@ -39,15 +39,6 @@ Bernstein<N> from_place(const Polynomial<N>& law, double x) {
     return x > 0 ? divided(whole, x).right : whole;
 }
 
-// The outcome for a body on a slope whose rolling ends at a time [s]: it slips or flies.
-Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
-    prepare(flow, time);
-    const auto [theta, omega, x] = sample(flow, time);
-    const State state = without_slip(scene.axes(), theta, omega, x, Mode::rolling);
-    const Mode next = first_continuation(scene, state, false).mode;
-    return next == Mode::flight ? Outcome::loses_contact : Outcome::slips;
-}
-
 // The outcome for a rolling circle, which has no tip, within half a turn.
 Outcome outcome_of_circle(const SlopeFlow& flow) {
     const double omega = flow.start.omega;
@@ -81,7 +72,7 @@ Outcome outcome_on_slope(const Scene& scene, const State& start, const Checkpoin
             return meeting && meeting->time <= first * flow.body.time;
         };
         if (before(met.touched)) return Outcome::edge;
-        if (breaks && before(met.broken)) return after_rolling(scene, flow, met.broken->time);
+        if (breaks && before(met.broken)) return after_rolling(scene, met.broken->time);
         if (first < infinity) return turns < tips ? Outcome::rocks : Outcome::rolls_over;
         place = next;
     }
@@ -138,6 +129,17 @@ Outcome outcome(const Scene& scene, const Checkpoint& checkpoint) {
     if (next.mode == Mode::sliding) return Outcome::slips;
     if (scene.slope != 0) return outcome_on_slope(scene, start, checkpoint);
     return classify(scene.body(), scene.friction, start.theta, start.omega);
+}
+
+Outcome after_rolling(const Scene& scene, double time) {
+    if (scene.slope == 0) return Outcome::slips;
+    const State start = initial_state(scene).state;
+    SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
+    prepare(flow, time);
+    const auto [theta, omega, x] = sample(flow, time);
+    const State end = without_slip(scene.axes(), theta, omega, x, Mode::rolling);
+    const bool flies = first_continuation(scene, end, false).mode == Mode::flight;
+    return flies ? Outcome::loses_contact : Outcome::slips;
 }
 
 double press_to(const Scene& scene, double distance, double omega) {

@@ -34,6 +34,9 @@ Outcome classify(const Body& body, double friction, double theta, double omega);
 // turn) or no longer rolls; `edge` if none of this happens for a long time.
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);
 
+// What the body of a scene does when its rolling ends at a time [s]: it slips or leaves the ground.
+Outcome after_rolling(const Scene& scene, double time);
+
 // The downward impulse at a horizontal distance from the centre that gives the body the angular
 // velocity omega, if the contact sticks: physics (38, 40). Negative if a pull is needed; infinite
 // if the lever is so small that no valid impulse suffices.

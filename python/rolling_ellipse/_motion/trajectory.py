@@ -116,7 +116,8 @@ class Trajectory(FieldsOnly):
         Explanation of the motion: when rolling ends, what is proved about it, and the friction
         needed for rolling and for the blow.
     valid_until : float
-        Time until which the model is valid [s]; infinite if it always is.
+        Time until which the model is valid [s]; infinite if it always is. At an EDGE (see
+        `Certificate`) it is undecided whether the model remains valid later; ``message`` says so.
     t_end : float
         Last time reached [s], up to which `sol` can be evaluated.
     span : float
@@ -492,8 +493,7 @@ def _reason(self: Trajectory) -> str:
     if self.start is not None:
         return in_words([("off_constraints", [])])
     _, headline, reasons = _core.describe(self.scene.core, self._solution)
-    until = [("until_the_blow", [("t", t)]) for t, _ in self.blows[:1]]
-    return in_words(headline + reasons[reasons[0][0] in _NOT_NEW :] + until)
+    return in_words(headline + reasons[reasons[0][0] in _NOT_NEW :])
 
 
 def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:

@@ -37,8 +37,9 @@ class Certificate(FieldsOnly, Listed):
     largest_friction_needed_angle : float or None
         Angle at which this friction is needed, defined like that of the normal force.
     ends_at : float or None
-        Unwrapped angle theta at which rolling ends, forwards in time; None if VALID. For a moving
-        body without friction, whose contact slides at once, it is the angle of the start.
+        Unwrapped angle theta at which rolling ends, forwards in time; None if VALID. If EDGE, it is
+        undecided whether rolling ends there. For a moving body without friction, whose contact
+        slides at once, it is the angle of the start.
     reason : str
         Description of what is proved, with the friction that is assumed and that the blow needs.
 
@@ -94,7 +95,7 @@ def certify(scene: Scene) -> Certificate:
     law holds for an interval of energies. Power series represent the motion with its N and F to
     within rounding, and Bernstein coefficients locate the first violation of the law. Of many half
     turns only those that imply the result for all others are examined. A violation within rounding
-    is EDGE. Rolling that holds for 1e15 half turns is VALID.
+    is EDGE. Rolling that holds for 1e15 half turns is VALID; ``reason`` then says so.
 
     Examples
     --------
