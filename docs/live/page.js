@@ -29,9 +29,11 @@ export class Workbench extends Explorer {
     super.begin();
     this.open(linked);
     this.renew();
-    if (!this.refusal) return;
+    const why = this.refusal;
+    if (!why) return;
     this.open(own); // the scene in the address is impossible
     this.renew();
+    this.refusal = why;
   }
 
   /** Set the numbers and the blows during the motion to those of an address. */
@@ -334,11 +336,10 @@ function inAddress(hash, usual) {
     slip: x_dot === undefined ? 0 : x_dot - (flies ? 0 : h * omega) };
 }
 
-/** The given numbers that the page has. Texts are read as numbers; NaN is left out. */
+/** The given numbers that the page has. Texts are read as numbers; the core refuses NaN. */
 function known(numbers, own) {
-  const pairs = Object.entries(numbers).filter(([name]) => name in own)
-    .map(([name, value]) => [name, value === null ? null : numberIn(`${value}`)]);
-  return Object.fromEntries(pairs.filter(([, value]) => !Number.isNaN(value)));
+  return Object.fromEntries(Object.entries(numbers).filter(([name]) => name in own)
+    .map(([name, value]) => [name, value === null ? null : numberIn(`${value}`)]));
 }
 
 /** The window of a strip. Its width is the same for long semi-axes between size/2 and size, unless

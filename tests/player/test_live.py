@@ -242,6 +242,21 @@ def test_an_old_link_without_rolling_resistance_opens_its_scene(opened: Opened) 
     assert page.evaluate(f"{PLAYER}.given") == linked and page.evaluate(f"{PLAYER}.found")
 
 
+@pytest.mark.parametrize(
+    "link", ["#a=1e309&b=1", "#a=NaN&b=1", "#a=2&b=1&mass=heavy", "#a=2&b=1&blows=abc,0,-10,0.5,0",
+             "#a=2&b=1&blows=-1,0,-10,0.5,0"],
+)  # fmt: skip
+def test_an_impossible_link_opens_the_scene_of_the_page_and_says_why(
+    opened: Opened, link: str
+) -> None:
+    page = opened(made_by("live")["page"](rl.explore(rl.scenes.report)), reduced_motion="reduce")
+    own = page.evaluate(f"{PLAYER}.given")
+    page.evaluate("(link) => { location.hash = link; location.reload(); }", link)
+    page.wait_for_function(f"{PLAYER} && {PLAYER}.refusal")
+    assert page.evaluate(f"{PLAYER}.given") == own
+    assert page.locator(".refused").inner_text().startswith("Not possible: ")
+
+
 HEIGHT = float(rl.geometry.support(1.1, a=2.0, b=1.0))
 LINKED = {
     "blow": rl.scenes.report,
