@@ -214,24 +214,25 @@ DoubleDouble time_of_turning(const SlopePiece& piece) {
     return since < infinity ? piece.from.time + since : DoubleDouble{infinity, 0.0};
 }
 
-// The search ends where the body turns back, since it may pass the tip again on its way back.
+// The search ends where the body turns back, since it may pass the tip again on its way back. Until
+// then the angle is monotone: the tip sought is the first one ahead. A piece of a nearly round body
+// may span more than half a turn.
 double time_of_tip(const SlopePiece& piece) {
     const double until = std::min(piece.lasts, turning_in(piece));
     if (std::isinf(until)) return infinity;
     const double from = double(piece.from.angle);
-    const auto angle_at = [&](double since) {
-        return from + value(piece.series.angle, since / piece.unit);
+    const auto turned_by = [&](double since) {
+        return value(piece.series.angle, since / piece.unit);
     };
-    const double to = angle_at(until);
-    double first = infinity;
-    for (const double tip : {-half_pi, 0.0, half_pi}) {
-        const bool is_tip = (tip == 0) == is_odd(piece.from.quarters);
-        if (!is_tip || std::abs(from - tip) <= equal_ulps * epsilon) continue;
-        if ((from < tip) == (to < tip)) continue;
-        const auto passed = [&](double since) { return (angle_at(since) < tip) != (from < tip); };
-        first = std::min(first, double(piece.from.time + bisect(0.0, until, passed).high));
-    }
-    return first;
+    const double heading = std::copysign(1.0, turned_by(until));
+    double tip = is_odd(piece.from.quarters) ? 0.0 : heading * half_pi;
+    if (heading * (tip - from) <= equal_ulps * epsilon) tip += heading * pi;
+    const auto passed = [&](double since) {
+        const double angle = from + turned_by(since);
+        return heading > 0 ? angle >= tip : angle < tip;
+    };
+    if (!passed(until)) return infinity;
+    return double(piece.from.time + bisect(0.0, until, passed).high);
 }
 
 SlopePlace place_after(const SlopeBody& body, const Datum& start, const SlopePiece& piece) {
