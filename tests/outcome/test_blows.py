@@ -308,6 +308,67 @@ def test_blow_to_is_the_weakest_press_that_rolls_the_body_over(
     assert outcome(scene, weaker) is not Outcome.ROLLS_OVER
 
 
+def presses_on_a_start(random: np.random.Generator) -> tuple[Scene, float]:
+    """A start on level ground, half of them sliding, with the distance of a press."""
+    a, b = 1.0, random.choice([random.uniform(0.2, 0.99), random.uniform(1.01, 3.0)])
+    friction = random.choice([math.inf, random.uniform(0.05, 3.0)])
+    theta, speed = random.uniform(-3.2, 3.2), rl.thresholds(a, b).roll_over_speed
+    scene = Scene(a, b, theta=theta, omega=speed * random.uniform(-3, 3), friction=friction)
+    if random.random() < 0.5:
+        scene = replace(scene, x_dot=speed * random.uniform(-3, 3))
+    lead = float(rl.geometry.support_slope(theta, a=a, b=b))
+    reach = float(rl.geometry.support(theta + math.pi / 2, a=a, b=b))
+    return scene, float(np.clip(lead + random.uniform(-1, 1), -reach, reach))
+
+
+def test_no_weaker_press_than_blow_to_rolls_the_body_over() -> None:
+    """A scan of the outcomes of weaker presses, or of presses of all sizes if `blow_to` refuses,
+    finds none that rolls the body over, except within the rounding errors of the proof. Where the
+    body starts to slide, or rolls too fast to keep its grip, the least press may be for the
+    direction in which the press does not turn the body."""
+    random = np.random.default_rng(3)
+    shares = np.concatenate([np.geomspace(1e-9, 1, 1000), np.linspace(0, 1, 1001), [1 - 1e-8]])
+    shares = shares[(shares > 0) & (shares < 1 - 1e-9)]
+    against = refused = sliding = 0
+    for _ in range(300):
+        scene, distance = presses_on_a_start(random)
+        if scene.initial_state.mode is Mode.FLIGHT or outcome(scene) is Outcome.ROLLS_OVER:
+            continue
+        try:
+            least = -blow_to(scene, distance).jz
+        except ValueError:
+            refused += 1
+            tried = 1e4 * shares
+        else:
+            struck = replace(scene, impulse=Impulse.press(least, distance))
+            assert outcome(struck) is Outcome.ROLLS_OVER
+            lead = float(rl.geometry.support_slope(scene.theta, a=scene.a, b=scene.b))
+            against += struck.initial_state.omega * (distance - lead) < 0
+            sliding += scene.initial_state.mode is Mode.SLIDING
+            tried = least * shares
+            tried = tried[tried < least]
+        codes = np.asarray(outcome(scene, Impulse.press(tried, distance)))
+        assert not (codes == Outcome.ROLLS_OVER).any(), (scene, distance)
+    assert min(against, refused) > 10
+    assert sliding > 60
+
+
+@pytest.mark.parametrize(
+    ("scene", "distance", "least"),
+    [
+        (Scene(1.0, 0.3, theta=-1.8, omega=0.186, x_dot=-1.354), 0.26, 0.2417),
+        (Scene(1.0, 0.97, theta=-1.5, x_dot=1.9, friction=2.0), -0.74, 0.4186),
+        (Scene(1.0, 0.979859774901744, theta=-1.56968, omega=-0.9664, x_dot=1.525), 0.005, 7.5e-5),
+    ],
+)
+def test_the_least_press_may_just_stop_a_slip(scene: Scene, distance: float, least: float) -> None:
+    """With the least press the contact just sticks in the blow; with 1e-9 less it slides on."""
+    blow = blow_to(scene, distance)
+    assert -blow.jz == pytest.approx(least, rel=1e-2)
+    weaker = replace(scene, impulse=Impulse.press(-blow.jz * (1 - 1e-9), distance))
+    assert weaker.initial_state.mode is Mode.SLIDING
+
+
 def test_a_harder_press_may_need_less_friction() -> None:
     """A 1.1:1 disc needs a friction of 0.0614 at the speed of the separatrix and of 0.0492 at twice
     this speed. If the friction is 0.055, `blow_to` returns the press for a speed between these two,

@@ -15,7 +15,7 @@ from .._ask.check import FloatArray, broadcast, choice, number, shaped, shown
 from .._ask.impulse import Impulse
 from .._ask.scene import Scene, require_scene
 from .._core import Mode, Outcome
-from ..geometry import support
+from ..geometry import support, support_slope
 from .batches.asked import BLOW, SceneGrid
 from .certify import certify
 from .workers import Columns, shared
@@ -178,10 +178,12 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
         Horizontal distance of the press from the centre [m], as in `Impulse.press`.
     omega : float, optional
         Angular velocity just after the blow [rad/s], to within rounding. By default the least press
-        after which the body rolls over on level ground is returned, the smallest double for which
-        `outcome` proves it. The search tries 2049 speeds, up to 1001 times the one that just
-        reaches the tip, because a harder press may need less friction (on a nearly round body). It
-        ends with a bisection.
+        after which the body rolls over on level ground is returned: the smallest F > 0 for which
+        `outcome` is ``ROLLS_OVER``, to within rounding. This is the smallest double if any press
+        will do. The body may roll over in either direction, since a press that just stops a slip
+        may be enough. The search tries 2049 speeds in each direction, up to 1001 times the one that
+        just reaches the tip, because a harder press may need less friction (on a nearly round
+        body), and the presses at which a slide starts to stick. It ends with a bisection.
 
     Returns
     -------
@@ -268,18 +270,19 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
     least = _core.speed_to_the_tip(scene.core, scene.theta)
     if least == 0:
         raise ValueError("omega must be given for a circle or on the tip: no press is the least")
-    backwards, forwards = (_core.press_to(scene.core, distance, s * least) for s in (-1, 1))
+    speeds = least * (1 + np.concatenate([[0.0], np.geomspace(1e-13, _FASTEST, _SPEEDS)]))
+    # A press may also make the body roll over against its moment: if it is weaker than the one
+    # that turns the body back, but strong enough to stop its slip or to slow it down.
+    press_to = partial(_core.press_to, scene.core, distance)
+    forces = np.array([press_to(omega) for omega in [*-speeds, *speeds]])
+    backwards, forwards = forces[0], forces[speeds.size]
     _require_lever(forwards, distance)
-    side = 1 if forwards > backwards else -1
-    beyond = np.concatenate([[0.0], np.geomspace(1e-13, _FASTEST, _SPEEDS)])
-    forces = np.array(
-        [_core.press_to(scene.core, distance, side * least * (1 + s)) for s in beyond]
-    )
+    forces = np.unique(np.append(forces, _limits_of_sticking(scene, distance)))
     forces = forces[(forces > 0) & np.isfinite(forces)]
     codes = outcome(scene, Impulse.press(forces, distance))
     over = np.flatnonzero(np.asarray(codes) == Outcome.ROLLS_OVER)
     if over.size == 0:
-        raise _never_over(scene, distance, side * least)
+        raise _never_over(scene, distance, least if forwards > backwards else -least)
     first = int(over[0])
     high, low = float(forces[first]), float(forces[first - 1]) if first else 0.0
     while low < (middle := low + 0.5 * (high - low)) < high:
@@ -288,6 +291,25 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
         else:
             low = middle
     return Impulse.press(high, distance)
+
+
+def _limits_of_sticking(scene: Scene, distance: float) -> FloatArray:
+    """Return the presses just below and just above those at which the contact starts to stick.
+
+    The impulses of the ground on a contact that sticks, `along` and `up`, are linear in the press.
+    It sticks if abs(along) <= friction * up.
+    """
+    if scene.x_dot is None:
+        return np.empty(0)
+    h, lead = (float(of(scene.theta, a=scene.a, b=scene.b)) for of in (support, support_slope))
+    inertia = scene.gyration2 + h * h + lead * lead
+    moment = (scene.gyration2 + lead * lead) * scene.omega + h * scene.x_dot
+    omega = np.array([moment, (distance - lead) / scene.mass]) / inertia  # at F = 0, and per F
+    along = scene.mass * (h * omega - [scene.x_dot, 0.0])
+    up = scene.mass * lead * (omega - [scene.omega, 0.0]) + [0.0, 1.0]
+    margins = min(scene.friction, 1e12) * up + np.outer([1.0, -1.0], along)
+    at = -margins[:, 0] / np.where(margins[:, 1] == 0, np.inf, margins[:, 1])
+    return np.concatenate([at * (1 - 1e-9), at * (1 + 1e-9)])
 
 
 def _never_over(scene: Scene, distance: float, least: float) -> ValueError:
