@@ -13,7 +13,7 @@ from collections import Counter
 import pytest
 from oracles.paths import ROOT
 
-CODE_LINES = {"src": 13_260, "python/rolling_ellipse": 14_720}
+CODE_LINES = {"src": 13_290, "python/rolling_ellipse": 14_800}
 SLACK = 1.02
 SUFFIXES = (".py", ".pyi", ".js", ".cpp", ".hpp")
 COMMENT = re.compile(r"^[ \t]*(?://[^\n]*|/\*.*?\*/)", re.DOTALL | re.MULTILINE)
