@@ -61,6 +61,7 @@ _FEWEST = 20  # minimum number of impacts for estimating errors from halves of t
 _BLOCK = 2**20  # largest number of impacts predicted in one call
 _COARSE, _FINE = 24, 64  # cells per coefficient of grids that locate the peak, and of the last one
 _DEPTH = 25.0  # the next grid covers the points whose likelihood exceeds exp(-25) times the maximum
+_LARGE = 1e15  # largest ratio of sigma to the speeds, or of the speeds to sigma
 _ZOOMS = 12  # largest number of coarse grids; each is at least 1/12 as wide as the previous one
 
 
@@ -225,8 +226,9 @@ class FittedImpacts(Listed):
     rms_error: float = field(init=False)
 
     def __post_init__(self) -> None:
+        unit, errors = _unit(self.errors), np.sort(self.errors)
         for name, measure in _MEASURES.items():
-            object.__setattr__(self, f"{name}_error", float(measure(np.sort(self.errors))))
+            object.__setattr__(self, f"{name}_error", unit * float(measure(errors / unit)))
 
     def __repr__(self) -> str:
         return printable(
@@ -296,7 +298,8 @@ def fit(
         depend on this choice.
     sigma : float, optional
         Standard deviation of the measured velocities [m/s], the same in each direction of the
-        kinetic metric, for the likelihood. Default: unknown, with the prior 1/sigma (Jeffreys).
+        kinetic metric, for the likelihood; about 1e-15 to 1e15 times the speeds. Default: unknown,
+        with the prior 1/sigma (Jeffreys).
 
     Returns
     -------
@@ -348,13 +351,9 @@ def fit(
         body: dict[str, Any] = {"a": a, "b": b, "gyration2": gyration2, "sigma": sigma}
         return {each: fit(before, after, **body, law=each, minimise=minimise) for each in LAWS}
     measure = _MEASURES[choice("minimise", minimise, get_args(Measure))]
-    if sigma is not None and not 0 < number("sigma", sigma) < math.inf:
-        raise ValueError(f"sigma must be a positive finite speed [m/s] or None, got {sigma!r}")
     start, end = _series("before", before, 4), _series("after", after, 3)
     if start.shape[1] != end.shape[1]:
-        raise ValueError(
-            f"after must have as many impacts as before, {start.shape[1]}, got {end.shape[1]}"
-        )
+        raise ValueError(f"after must have {start.shape[1]} impacts, as before, got {end.shape[1]}")
     a, b = number("a", a), number("b", b)
     k2 = uniform_disc(a, b) if gyration2 is None else number("gyration2", gyration2)
     gap_rate = start[2] - geometry.support_slope(start[0], a=a, b=b) * start[3]  # physics (12)
@@ -364,6 +363,13 @@ def fit(
 
     def errors(velocities: Any, seen: FloatArray) -> FloatArray:
         return np.asarray(kinetic_speed(*(np.stack(velocities) - seen), gyration2=k2))
+
+    unit = _unit(kinetic_speed(*np.hstack([start[1:], end]), gyration2=k2))
+    start, end = np.vstack([start[:1], start[1:] / unit]), end / unit
+    noise = 1.0 if sigma is None else number("sigma", sigma) / unit
+    if not 1 / _LARGE <= noise <= _LARGE:
+        within = f"{unit / _LARGE:g} to {unit * _LARGE:g} m/s for these speeds, or None"
+        raise ValueError(f"sigma must be {within}, got {sigma!r}")
 
     order = np.lexsort(np.abs(np.vstack([end, start])))
     halves = _halves(order)
@@ -384,7 +390,7 @@ def fit(
         squares = np.concatenate([(off_at(each)[:, order] ** 2).sum(axis=1) for each in rows])
         count = end.size
         if sigma is not None:
-            return -squares / (2 * sigma**2) - count / 2 * math.log(2 * math.pi * sigma**2)
+            return -squares / (2 * noise**2) - count / 2 * math.log(2 * math.pi * noise**2)
         with np.errstate(divide="ignore"):
             return math.lgamma(count / 2) - math.log(2) - count / 2 * np.log(math.pi * squares)
 
@@ -397,10 +403,19 @@ def fit(
     likeliest, evidence, covariance = _integral(densities)
     stretch = np.array([1.0, 1 + friction**2])  # d(restitution, friction)/d(restitution, angle)
     return FittedImpacts(
-        law, restitution, friction, off, *deviations, measured=end, predicted=predicted,
-        log_likelihood=likeliest, covariance=covariance * np.outer(stretch, stretch),
-        log_evidence=evidence,
+        law, restitution, friction, unit * off, *deviations, measured=unit * end,
+        predicted=unit * predicted, log_likelihood=likeliest - end.size * math.log(unit),
+        covariance=covariance * np.outer(stretch, stretch),
+        log_evidence=evidence - end.size * math.log(unit),
     )  # fmt: skip
+
+
+def _unit(speeds: FloatArray) -> float:
+    """Return a power of two near the largest speed, so that no division by it loses a digit.
+
+    In this unit the squares of all speeds that matter neither underflow nor overflow.
+    """
+    return float(2.0 ** (math.frexp(speeds.max())[1] - 1))
 
 
 def _halves(places: Any) -> list[Any]:
@@ -492,7 +507,5 @@ def _series(name: str, columns: Sequence[Any], count: int) -> FloatArray:
     """Return `count` columns, with one finite number per impact, as the rows of an array."""
     rows = finite(name, columns)
     if rows.ndim != 2 or len(rows) != count or rows.shape[1] == 0:
-        raise ValueError(
-            f"{name} must be {count} columns of one number for each impact, got shape {rows.shape}"
-        )
+        raise ValueError(f"{name} must be {count} columns, one row an impact, got {rows.shape}")
     return rows

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from impacts.test_laws_and_fit import BODY, K2, after, approaching, series, speed
-from rolling_ellipse import impacts
+from rolling_ellipse import course, impacts
 from scipy.integrate import quad
 from scipy.special import logsumexp
 
@@ -89,3 +89,23 @@ def test_the_likelihood_depends_neither_on_the_measure_nor_on_the_grids() -> Non
     stuck = after(state, "stronge", math.inf, 0.5)
     found = impacts.fit(list(state), list(stuck), **BODY, sigma=0.01)
     assert found.log_likelihood == pytest.approx(density(0.0, 150, 0.01), abs=1e-3)
+
+
+@pytest.mark.parametrize("unit", [2.0**-1000, 2.0**100])
+def test_the_unit_of_speed_scales_the_fit(unit: float) -> None:
+    """A power of two changes no digit of a speed, and no coefficient. A density of N speeds is
+    divided by unit^N: its logarithm is up to 72 times 693, of which doubles resolve 1e-11."""
+    before, seen = course.measured_impacts()
+    other = [before[0], *(unit * np.array(before[1:]))]
+    for sigma, scaled in ((None, None), (0.1, 0.1 * unit)):
+        how: dict[str, Any] = {"a": 0.035, "b": 0.025}
+        one = impacts.fit(list(before), list(seen), **how, sigma=sigma)
+        two = impacts.fit(other, list(unit * np.array(seen)), **how, sigma=scaled)
+        for name in ("restitution", "friction", "restitution_error", "friction_error"):
+            assert getattr(two, name) == getattr(one, name)
+        for name in ("median_error", "rms_error"):
+            assert getattr(two, name) == unit * getattr(one, name)
+        for name in ("log_likelihood", "log_evidence"):
+            shift = 3 * one.errors.size * math.log(unit)
+            assert getattr(two, name) + shift == pytest.approx(getattr(one, name), abs=1e-9)
+        assert np.array_equal(two.covariance, one.covariance)

@@ -161,7 +161,7 @@ REFUSALS: list[Row] = [
     *wrong(impacts.fit, {"before": BEFORE, "after": AFTER, **AXES},
            before=[[1.0], UPWARDS, MASKED, BEFORE[:3], BEFORE[:, :0], BEFORE + NAN],
            after=[TWO_IMPACTS, AFTER[0], AFTER + INF], minimise=["mean"], law=["kane"], b=[-0.3],
-           gyration2=[0.0], sigma=[0.0, -1.0, INF, NAN, "1"]),
+           gyration2=[0.0], sigma=[0.0, -1.0, INF, NAN, "1", 1e-200, 1e-160, 1e155, 1e200]),
     # the course
     *wrong(course.sheet, {"number": 1}, number=[0, 11, "1", 1.5, None], seed=SEEDS),
     *wrong(course.sheet(1).save, {}, path=["sheet.pdf", "", None]),
