@@ -29,6 +29,7 @@ import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse._motion.inputs import value_of
 from runs import add_record, read_records
+from scipy.special import betainc, ndtri
 
 Tracks = dict[str, Any]
 TRACKS = ("x", "z", "theta")
@@ -90,14 +91,16 @@ def guessed(scene: rl.Scene, free: tuple[str, ...]) -> rl.Scene:
 
 
 def largest(fit: rl.Fit) -> float:
-    """Return the largest T of a fit's tracks, as `judged` in films/judgement.py defines it."""
+    """Return the largest T of a fit's tracks: a normal deviate exceeds it as rarely as noise
+    exceeds the correlation of neighbouring residuals that `judged` in films/judgement.py defines.
+    """
     found = [0.0]
     for r in fit.residuals.T:
         pairs = np.isfinite(r[:-1]) & np.isfinite(r[1:])
         one, other = r[:-1][pairs], r[1:][pairs]
         if one.size >= 8:
-            squares = float(one @ one + other @ other) / 2
-            found.append(math.sqrt(one.size) * float(one @ other) / squares)
+            unlike = float((one - other) @ (one - other)) / (2 * float(one @ one + other @ other))
+            found.append(-float(ndtri(betainc(one.size / 2, one.size / 2, unlike))))
     return max(found)
 
 
@@ -271,7 +274,8 @@ def wrong(seed: int) -> dict[str, Any]:
     film = noisy(EXAMPLE, TIMES, SIGMA, random)
     given = SIGMA if seed // len(WRONG) % 2 else None
     fit = rl.fit_motion(**film | change(film, random), scene=GUESS, free=FREE, sigma=given)
-    alarm, named = ("not fit" in fit.message or "beyond any" in fit.message), fit.message[-60:]
+    alarm = "not fit" in fit.message or "beyond any" in fit.message
+    named = fit.message.partition("it fits with")[2]
     return {"kind": kind, "given": given is not None, "alarm": alarm, "reading": reading,
             "named": bool(reading) and reading in named, "message": fit.message}  # fmt: skip
 

@@ -1,6 +1,7 @@
 """A fit estimates the noise, and reports whether a scene or a misreading explains the film."""
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import judge_films
@@ -8,7 +9,9 @@ import numpy as np
 import pytest
 from judge_films import EXAMPLE, FREE, GUESS, KINDS, SIGMA, TIMES, WRONG, noisy
 from rolling_ellipse import Fit, Scene, fit_motion, simulate
-from rolling_ellipse._verbs.films.judgement import neighbours  # its effect on fits is statistical
+from rolling_ellipse._verbs.films import judgement  # its effect on fits is statistical
+from rolling_ellipse._verbs.films.film import Film
+from rolling_ellipse._verbs.films.judgement import judged, neighbours
 
 TRACKS = ("x", "z", "theta")
 
@@ -83,6 +86,46 @@ def test_correct_films_raise_no_alarm(seed: int) -> None:
     row = judge_films.right(seed)
     assert not row["alarm"] and row["T"] < 3.5
     assert all(abs(off) < 5 for off in row["off"].values())
+
+
+@pytest.mark.parametrize("pairs", [1, 8, 13, 60])
+@pytest.mark.parametrize("apart", [True, False])
+def test_noise_of_any_length_raises_alarms_at_the_same_rate(
+    monkeypatch: pytest.MonkeyPatch, pairs: int, apart: bool
+) -> None:
+    """The rate is raised to a tenth, so that 2000 tracks show it: within four standard deviations
+    for separate pairs. In a row of frames the pairs overlap, and the rate is at least 0.7 of it."""
+    monkeypatch.setattr(judgement, "_RARE", 0.1)
+    monkeypatch.setattr(judgement, "_FEWEST", 1)
+    t = np.arange(2.0 * pairs) if apart else np.arange(pairs + 1.0)
+    t += 9 * (t // 2) * apart
+    unknowns = SimpleNamespace(scene=EXAMPLE, lens=lambda _: (np.ones(3), np.zeros(3)))
+    random, alarms = np.random.default_rng(0), 0
+    for _ in range(2000):
+        film = Film(t, np.column_stack([np.full(t.size, math.nan), random.normal(size=t.size), t]))
+        film.data[:, 2] = math.nan
+        search: Any = SimpleNamespace(
+            film=film, unknowns=unknowns, sigma=np.ones(3), loss="linear", dof=t.size,
+            residuals=lambda _, film=film: film.data[:, 1],
+        )  # fmt: skip
+        given = np.array([math.nan, math.nan, 1.0])
+        alarms += not judged(search, SimpleNamespace(x=None), given).fits
+    assert (0.1 if apart else 0.07) - 4 * math.sqrt(0.09 / 2000) < alarms / 2000
+    assert alarms / 2000 < 0.1 + 4 * math.sqrt(0.09 / 2000)
+
+
+@pytest.mark.parametrize("frames", [12, 13])
+def test_a_wrong_short_film_is_rejected_or_said_to_be_too_short(frames: int) -> None:
+    """A flight whose angles are off by 0.08 rad. Even 12 frames of one sign are rarer than the
+    alarm of a right film, but 12 right ones are too few to say that the scene fits."""
+    scene = Scene(0.035, 0.025, z=0.3, theta=0.5, omega=8.0, x_dot=0.5, z_dot=0.3)
+    free, t = ("omega", "x_dot", "z_dot"), np.arange(1, frames + 1) / 60
+    for seed in range(3):
+        right = noisy(scene, t, SIGMA, np.random.default_rng(seed))
+        few = fit_motion(**right, scene=scene, free=free).message
+        assert ("too few neighbouring frames" in few) == (frames < 13) and "not fit" not in few
+        wrong = right | {"theta": right["theta"] + 0.08}
+        assert "the scene does not fit" in fit_motion(**wrong, scene=scene, free=free).message
 
 
 def test_stated_errors_cover_the_other_minima() -> None:

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from ..._ask.check import FloatArray
+from ..._ask.printing import required
 from .film import NORMAL, TRACKS, sizes_of
 from .search import LEAST, Search, decomposed
 
 TRACKER = 0.02  # standard deviation of a poor tracker, relative to the size of the body or [rad]
-_ALARM = 3.5  # critical value of T in `judged`; none of 340 films of the right scene exceeded 2.99
-_FEWEST = 8  # least number of pairs of neighbours for a verdict
+_RARE = 2.3e-4  # probability of an alarm for a track of noise, that of 3.5 standard deviations
+_FEWEST = 8  # least number of pairs of neighbours for an alarm, which then needs c > 0.89
+_ENOUGH = 12  # least number of pairs for a verdict, for which an alarm needs c > 0.81
 _ROUNDING = 1e-8  # residuals with a smaller relative deviation are rounding errors
 _GAP = 1.5  # largest spacing of neighbouring frames, relative to the median spacing
 _WILD = 5.0  # residuals beyond this many sigma are outliers
@@ -89,10 +91,14 @@ def neighbours(t: FloatArray, off: FloatArray) -> tuple[FloatArray, FloatArray]:
 def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
     """Return the verdict on whether the scene fits the film.
 
-    T = sqrt(P) sum r r' / sum (r^2 + r'^2)/2 over the P pairs of neighbouring residuals r, r' of a
-    track is normally distributed if the residuals are noise. The mean is not removed, because a
-    shifted ground gives residuals of one sign. For a robust loss, outliers have less weight.
+    c = sum r r' / sum (r^2 + r'^2)/2 over P separate pairs of residuals r, r' is (A - B)/(A + B)
+    with A = sum (r + r')^2 and B = sum (r - r')^2. For normal noise, A and B are independent with P
+    degrees of freedom each, and B/(A + B) = (1 - c)/2 has the beta distribution with both
+    parameters P/2. The pairs of neighbouring frames overlap, which makes a large c half to nearly
+    as likely. The mean is not removed, because a shifted ground gives residuals of one sign. For a
+    robust loss, outliers have less weight; then a large c is up to three times as likely.
     """
+    tail = required("scipy.special", "fit_motion", "fit").betainc
     film, off = search.film, np.full(search.film.data.shape, math.nan)
     off[film.known] = search.residuals(best.x)
     size = min(search.unknowns.scene.a, search.unknowns.scene.b)
@@ -110,13 +116,13 @@ def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
             words.append(f"{wild} of {seen.sum()} values of {name} are beyond {_WILD:g} sigma")
             bad = True
         one, other = neighbours(film.t, _weighed(search.loss, off[:, k]))
-        judges = judges or one.size >= _FEWEST
+        judges = judges or one.size >= _ENOUGH
         if one.size < _FEWEST or search.sigma[k] < _ROUNDING * unit:
             continue
         squares = max(float(np.sum(one**2 + other**2)) / 2, np.finfo(float).tiny)
         alike = float(np.sum(one * other)) / squares
         likeness = max(likeness, alike)
-        bad = bad or math.sqrt(one.size) * alike > _ALARM
+        bad = bad or tail(one.size / 2, one.size / 2, (1 - alike) / 2) < _RARE
     residuals, dof = off[film.known], search.dof
     spread = _spread(search.loss, residuals, np.full(residuals.size, 1 - dof / residuals.size))
     bad = bad or (not np.isnan(given).any() and spread**2 > 1 + 5 * math.sqrt(2 / dof))
