@@ -151,6 +151,36 @@ def test_wrong_films_are_rejected_and_their_misreading_is_named(kind: str, sigma
         assert fit.scene == GUESS and all(map(math.isinf, fit.errors.values()))
 
 
+@pytest.mark.parametrize("seed", [0, 3, 4])
+def test_units_that_a_free_inertia_makes_equal_are_all_named(seed: int) -> None:
+    """Milliseconds of a rocking body. A time that is 4 % too long fits as well as the true one,
+    with another inertia. If the inertia is known, only the true unit fits."""
+    egg, t = Scene(0.035, 0.025, theta=0.6), np.arange(100) / 60
+    rocking = noisy(egg, t, SIGMA, np.random.default_rng(seed)) | {"t": 1000 * t}
+    guess = egg.replace(inertia=4e-4)
+    fit = fit_motion(**rocking, scene=guess, free=("inertia",))
+    _, _, named = fit.message.partition("it fits with ")
+    assert named.startswith("t = t / 1000 or ") and "t = t / 960" in named
+    assert named.endswith(", which the free unknowns cannot tell apart.")
+    fit = fit_motion(**rocking, scene=egg.replace(theta=0.5), free=("theta",))
+    assert fit.message.endswith("it fits with t = t / 1000.")
+
+
+@pytest.mark.parametrize("start", [100.0, 1.7e9])
+def test_a_film_of_another_days_clock_is_read_from_its_first_frame(start: float) -> None:
+    """No search is made at the late times, which would take ten times as long. A body that rolls
+    for 100 s is fitted, although its motion from the first frame fits another start as well."""
+    t = TIMES - TIMES[0]
+    late = fitted(film(1, t) | {"t": t + start}, sigma=None)
+    assert "not fitted; the film starts 1" in late.message and late.scene == GUESS
+    assert late.message.endswith("it fits with t = t - t[0].")
+    scene = Scene(0.035, 0.025, theta=0.3, omega=8.0, friction=2.0)
+    rolling = noisy(scene, t + 100, SIGMA, np.random.default_rng(2))
+    free = ("theta", "omega")
+    fit = fit_motion(**rolling, scene=scene.replace(omega=8.001), free=free, sigma=SIGMA)
+    assert "not fit" not in fit.message and abs(fit.values["omega"] - 8) < 5 * fit.errors["omega"]
+
+
 def test_no_misreading_explains_the_film_of_a_body_in_thick_air() -> None:
     """T, the measure of correlated residuals, exceeds 3.5, the bound for correct films."""
     tracks = film(11)

@@ -138,6 +138,9 @@ def test_an_undetermined_parameter_keeps_its_guess() -> None:
         if len(lost) == 1:  # the film determines only a sum of dx and dz
             kept = value_of(scene, lost[0])
             assert value_of(fit.scene, lost[0]) == pytest.approx(kept, abs=1e-8)
+    light = ROLL.replace(mass=1e-7, inertia=None)
+    fit = fit_motion(**filmed(ROLL, TIMES), scene=light, free=("theta", "mass"), sigma=SIGMA)
+    assert "mass   1e-07" in repr(fit) and "± inf" in repr(fit)
     turned = DROP.replace(theta=0.5 + 3 * math.pi)
     fit = fit_motion(**FILM, scene=turned, free=("theta",), sigma=SIGMA)
     assert abs(fit.scene.theta - turned.theta) < 0.05

@@ -58,7 +58,7 @@ class Fit:
     message : str
         Number of data, with chi2 over the degrees of freedom or the estimated deviations; the
         parameters that the film does not determine; and a note if the scene does not fit the film,
-        with a conversion of the data, if there is one, that makes it fit.
+        with the conversions of the data, if there are any, that make it fit equally well.
 
     Examples
     --------
@@ -85,8 +85,9 @@ class Fit:
     def _rows(self) -> list[Row]:
         rows: list[Row] = []
         for name, error in self.errors.items():
-            places = 6 if not 0 < error < math.inf else max(0, 1 - math.floor(math.log10(error)))
-            rows.append((name, f"{self.values[name]:.{places}f}", f"± {error:.{places}f}"))
+            places = max(0, 1 - math.floor(math.log10(error))) if 0 < error < math.inf else None
+            form = ".7g" if places is None else f".{places}f"
+            rows.append((name, f"{self.values[name]:{form}}", f"± {error:{form}}"))
         return rows
 
     def __repr__(self) -> str:
@@ -184,13 +185,16 @@ def fit_motion(
     threshold, or if another scene fits equally well. A parameter that the film does not determine
     keeps its guess.
 
-    The residuals r, r' of neighbouring frames are compared. If they are noise, the sum of r r'
-    divided by the sum of (r^2 + r'^2)/2, times the square root of the number of pairs, is normally
-    distributed. The scene does not fit the film if this number exceeds 3.5 in a track of eight
-    pairs or more, or if chi2 for given deviations is five standard deviations above its mean. In
-    that case the errors are multiplied by sqrt((1 + c)/(1 - c)), where c is the largest of these
-    ratios of sums; this factor is only an estimate. In addition, the conventions of other trackers
-    are tried. A film whose free fall disagrees with the scene is not fitted if other units fit.
+    The residuals r, r' of neighbouring frames are compared by c, the sum of r r' divided by the sum
+    of (r^2 + r'^2)/2. If they are normal noise, (1 + c)/2 of P separate pairs has the beta
+    distribution with both parameters P/2. The scene does not fit the film if so large a c has a
+    probability below 2.3e-4 (3.5 standard deviations) in a track of eight pairs or more, or if chi2
+    for given deviations is five standard deviations above its mean. In that case the errors are
+    multiplied by sqrt((1 + c)/(1 - c)) for the largest c; this factor is only an estimate. In
+    addition, the conventions of other trackers are tried. Those whose log likelihood is within 4.5
+    of the best one are named, the most common first: for an unknown unit of time this is three
+    standard deviations. A film whose free fall disagrees with the scene, or which starts later than
+    30 times its duration, is not fitted if it fits in other units or from t = 0.
 
     References
     ----------
@@ -248,6 +252,7 @@ def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit
     lost = ", ".join(itertools.compress(unknowns.names, np.isinf(errors)))
     sentences = [counted(search, best, given)]
     sentences += [f"the film cannot determine {lost}"] if lost else []
+    sentences += [film.late] if film.late and verdict.doubtful else []
     sentences += verdict.words
     tries = readings(film, unknowns.names) if verdict.doubtful else []
     if words := fitting(tries, unknowns, given, search.loss):
@@ -261,8 +266,8 @@ def _not_fitted(
 ) -> Fit:
     """Return the unchanged scene as a fit whose message describes the units of the film."""
     infinite = np.full(len(unknowns.names), math.inf)
-    why = "the frames are too far apart"
-    if fall is not None:
+    why = film.late or "the frames are too far apart"
+    if fall is not None and not film.late:
         why = f"the body falls at {fall:.3g} times gravity, as if t or z had other units"
     sentences = [f"{film.known.sum()} data, not fitted", why, "the scene does not fit the film"]
     sentences += [f"it fits with {words}"] if words else []

@@ -18,33 +18,36 @@ from .film import TRACKS, Film, Unknowns, sizes_of
 from .judgement import TRACKER, estimated, judged, settled
 from .search import Search
 
-X, Z, THETA = range(3)
-_RATES = (24, 25, 30, 50, 60, 100, 120, 200, 240, 300, 480, 500, 960, 1000)  # [frames/s]; 1000: ms
+X, Z = range(2)
+# Frames per second or, for 1000, milliseconds, the most common first
+_RATES = (1000, 30, 60, 25, 50, 24, 120, 240, 100, 200, 300, 480, 500, 960)
 _SLOWED = (2, 3, 4, 5, 8, 10, 16)  # factors of slow or fast motion, if times are those of playback
 _UNITS = [*(1 / rate for rate in (*_SLOWED, *_RATES)), *map(float, _SLOWED)]  # units of time [s]
 _LENGTHS = (100.0, 1000.0)  # centimetres and millimetres per metre
 _WRONG = 3.0  # ratio of free fall to gravity, or its inverse, beyond which the units must be wrong
 _NEAR = 1.2  # accepted ratio of a unit to the one that free fall indicates
 _ALIASED = 10.0  # frames more than this many sqrt(L/g) apart cannot resolve rocking
-_QUICK, _RUN = 6, 2  # number of starts per reading, and number of readings that are fitted fully
+_QUICK, _RUN = 6, 2  # number of starts per reading; number of readings fitted fully if none fits
+# If the unit of time were an unknown, twice the rise of the log likelihood at its best value above
+# that at the true one would have the chi2 distribution of one degree of freedom: 3 sigma
+_ALIKE = 3.0**2 / 2
 
 
 def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film]:
     """Return readings in other units of time or length, or none if those of the film may be right.
 
-    Without a flight, other units of time are tried only if the frames seem too far apart.
+    Without a flight, other units of time are tried only if the frames seem too far apart. A late
+    film in the right units is returned with its reading from t = 0.
     """
-    scene = unknowns.scene
+    scene, late = unknowns.scene, [film, _from_zero(film)] if film.late else []
     if fall is None:
         natural = math.sqrt(max(scene.a, scene.b) / scene.gravity)
         far = film.t.size > 1 and float(np.median(np.diff(film.t))) > _ALIASED * natural
-        return [_timed(film, 1 / rate) for rate in (_RATES if far else ())]
+        return [_timed(film, 1 / rate) for rate in (_RATES if far else ())] or late
     if {"gravity", "scale"} & {*unknowns.names} or 1 / _WRONG < fall < _WRONG:
-        return []
+        return late
     upright, size = film if fall > 0 else _flipped(film), abs(fall)
-    others = []
-    if fall < 0 and 1 / _WRONG < size < _WRONG:
-        others += [upright, *_turned(upright)[:1]]
+    others = [upright, *_turned(upright)[:1]] if fall < 0 and 1 / _WRONG < size < _WRONG else []
     units = [unit for unit in _UNITS if 1 / _NEAR < unit / math.sqrt(size) < _NEAR]
     others += [_timed(upright, unit) for unit in units or [math.sqrt(size)]]
     lengths = [unit for unit in _LENGTHS if 1 / _NEAR < unit / size < _NEAR]
@@ -58,9 +61,8 @@ def readings(film: Film, names: tuple[str, ...]) -> list[Film]:
     later than its duration, only another origin of time is tried.
     """
     x, z, theta = film.known.any(axis=0)
-    clock = _read(film, "t = t - t[0]", t=film.t - film.t[0])
     if film.t[0] > np.ptp(film.t):
-        return [clock]
+        return [_from_zero(film)]
     others = _turned(film) if theta else []
     if z:
         flipped = _flipped(film)
@@ -71,29 +73,44 @@ def readings(film: Film, names: tuple[str, ...]) -> list[Film]:
         others += [_read(film, "x = x {x:+.3g}", adrift=(X,))]
     if (x or z) and "scale" not in names:
         others += [_scaled(film, unit) for unit in _LENGTHS]
-    return [*others, clock] if film.t[0] > 0 else others
+    return [*others, _from_zero(film)] if film.t[0] > 0 else others
 
 
 def fitting(tries: list[Film], unknowns: Unknowns, given: FloatArray, loss: str) -> str:
-    """Return the description of the reading that fits best, or "" if none fits.
+    """Return the readings that fit, or "" if none does or the film itself may be the best of them.
 
-    Readings are ranked by the likelihood of their residuals, with sigma estimated for each.
+    Readings are ranked by the likelihood of their residuals, with sigma estimated for each. Those
+    that fit as well as the best one are returned in the order of `tries`. The film itself starts
+    late if it is one of `tries`, and is fitted only from the guess: no search can count its turns.
     """
     ranked, sizes, unknown = [], sizes_of(unknowns.scene), np.full(len(TRACKS), math.nan)
-    for film in tries:
+    for place, film in enumerate(tries):
         search = Search(film, unknowns, TRACKER * sizes, loss)
         with suppress(ValueError):  # no motion in the search reaches the last time
-            best = search.minima(_QUICK)[0]
+            best = search.minima(_QUICK)[0] if film.reading else search.solve(unknowns.own)
             for _ in range(2):
                 search.sigma = estimated(search, best, unknown)
                 best = search.solve(best.x)
-            size = float(np.log(search.sigma / sizes)[search.track].sum())
-            ranked.append((size, search))
-    for _, search in sorted(ranked, key=itemgetter(0))[:_RUN]:
+            ranked.append((_misfit(search, best), place, search))
+    ranked.sort(key=itemgetter(0))
+    fits: list[tuple[int, float, str]] = []
+    for rank, (misfit, place, search) in enumerate(ranked):
+        if misfit > ranked[0][0] + _ALIKE and (fits or rank >= _RUN):
+            break
+        if not search.film.reading:
+            return ""
         best = settled(search, search.best(search.minima()), given, 2)
         if not judged(search, best, given).doubtful:
-            return " and ".join(search.film.reading).format(**_origins(search, best))
-    return ""
+            words = " and ".join(search.film.reading).format(**_origins(search, best))
+            fits.append((place, _misfit(search, search.solve(best.x)), words))
+    least = min(map(itemgetter(1), fits), default=0.0)
+    alike = [words for _, misfit, words in sorted(fits) if misfit < least + _ALIKE]
+    return " or ".join(alike) + ", which the free unknowns cannot tell apart" * (len(alike) > 1)
+
+
+def _misfit(search: Search, best: Any) -> float:
+    """Return minus the logarithm of the likelihood, up to a constant."""
+    return float(best.cost + np.log(search.sigma)[search.track].sum())
 
 
 def _origins(search: Search, best: Any) -> dict[str, float]:
@@ -120,9 +137,7 @@ def _turned(film: Film) -> list[Film]:
 
 
 def _angled(film: Film, words: str, factor: float, added: float) -> Film:
-    data = film.data.copy()
-    data[:, THETA] = factor * data[:, THETA] + added
-    return _read(film, f"theta = {words}", data=data)
+    return _read(film, f"theta = {words}", data=film.data * (1, 1, factor) + (0, 0, added))
 
 
 def _flipped(film: Film) -> Film:
@@ -130,8 +145,11 @@ def _flipped(film: Film) -> Film:
 
 
 def _scaled(film: Film, unit: float) -> Film:
-    words = f"x = x / {unit:g} and z = z / {unit:g}"
-    return _read(film, words, data=film.data / (unit, unit, 1))
+    return _read(film, f"x = x / {unit:g} and z = z / {unit:g}", data=film.data / (unit, unit, 1))
+
+
+def _from_zero(film: Film) -> Film:
+    return _read(film, "t = t - t[0]", t=film.t - film.t[0])
 
 
 def _timed(film: Film, unit: float) -> Film:

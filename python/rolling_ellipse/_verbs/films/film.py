@@ -26,6 +26,7 @@ CAMERA = ("scale", "ground", "clock")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _BOUNDS |= {"scale": (0.01, 1e5), "clock": (0.0, math.inf)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # bounds: 0.1 to 100 times the guess
+_LATE = 30.0  # durations of the film after which a phase known to one radian at the start is lost
 _FINEST, _COARSEST = 1e-15, 1e15  # bounds of sigma/size of the body, so that squares are finite
 
 
@@ -42,6 +43,13 @@ class Film:
     @cached_property
     def known(self) -> Any:
         return np.isfinite(self.data)
+
+    @property
+    def late(self) -> str:
+        """When the film starts, if too late for a search, whose starts are fewer than the turns
+        that a body may have made; otherwise ""."""
+        late = self.t[0] > _LATE * np.ptp(self.t)
+        return f"the film starts {self.t[0]:.3g} s after the scene" if late else ""
 
     def off(self, motion: Trajectory, factors: Any = 1.0, added: Any = 0.0) -> FloatArray:
         """Return measured minus computed tracks.
@@ -79,13 +87,10 @@ def sizes_of(scene: Scene) -> FloatArray:
 
 def sigma_of(sigma: Any, scene: Scene) -> FloatArray:
     """Return the standard deviations of the tracks, with NaN for those to be estimated."""
-    given = dict.fromkeys(TRACKS, math.nan)
-    if isinstance(sigma, Mapping):
-        distinct("sigma", sigma, TRACKS)
-        given |= {name: positive("sigma", value) for name, value in sigma.items()}
-    elif sigma is not None:
-        given = dict.fromkeys(TRACKS, positive("sigma", sigma))
-    sigmas, sizes = np.array(list(given.values())), sizes_of(scene)
+    given = sigma if isinstance(sigma, Mapping) else dict.fromkeys(TRACKS, sigma)
+    distinct("sigma", given, TRACKS)
+    given = {name: positive("sigma", each) for name, each in given.items() if sigma is not None}
+    sigmas, sizes = np.array([given.get(n, math.nan) for n in TRACKS]), sizes_of(scene)
     if np.any(sigmas < _FINEST * sizes) or np.any(sigmas > _COARSEST * sizes):
         within = f"{_FINEST:g} to {_COARSEST:g} times max(a, b) or 1 rad"
         raise ValueError(f"sigma must be {within}, got {sigma!r}")
