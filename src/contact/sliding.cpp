@@ -265,8 +265,8 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
 
-// Whether the start is a state in which a slide jams: B = 0 and c = 0 to within rounding and an
-// uncertainty `blur` of theta.
+// Whether a slide jams in this state: B = 0 and c = 0 to within rounding and an uncertainty `blur`
+// of theta.
 bool has_jammed(const Scene& scene, const State& state, const Geometry& at, double slip,
                 double blur) {
     constexpr double rounding = 1e-12;  // a slide ends where B is a tenth of this

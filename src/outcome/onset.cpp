@@ -99,7 +99,8 @@ struct Rolling {
         return energy_range(shape, energy, energy - shape.c2 / (1 + shape.short_axis));
     }
 
-    // The proved sign of the law over all heights that the motion reaches.
+    // The sign, if it is proved, of the margins N and mu N - |F| over all heights that the motion
+    // reaches.
     Sign law(const ForcePolynomials& forces) const {
         const Sign contact = sign_on_unit_interval(bernstein(forces.normal));
         if (contact == Sign::negative) return contact;

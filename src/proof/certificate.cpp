@@ -96,8 +96,8 @@ void add_refined(std::vector<double>& places, const Quarter& quarter, double zer
     add_between(zero, high);
 }
 
-// The positions, ascending, beyond which the law may be broken: the zeros of the law and those of
-// N. A zero of the squared form at a negative N is not a zero of the law.
+// The positions, ascending, beyond which the law may be broken: the zeros of N and of mu N - |F|.
+// `law` is the polynomial mu^2 N^2 - F^2, whose zeros at a negative N do not count.
 template <int N>
 std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& contact,
                                     const Bernstein<N>& law) {

@@ -76,7 +76,7 @@ def test_angles_are_unwrapped_at_the_ends_of_their_range(period: float, rate: fl
 
 
 def test_two_points_of_a_body_give_its_middle_and_its_angle() -> None:
-    """The angle is clockwise as seen in the film, whether heights count upwards or downwards."""
+    """The angle is clockwise as seen in the film, whether the axis z points up or down."""
     angle, middle = np.linspace(0.3, 9.0, 30), np.array([[2.0], [3.0]])
     along = 0.4 * np.stack([np.cos(angle), -np.sin(angle)])
     tracks = np.concatenate([middle - along, middle + along])

@@ -59,8 +59,8 @@ def test_projected_motions_leave_the_path_in_proportion_to_time() -> None:
 def test_residuals_of_projection_stay_small_between_steps(scene: Scene, stabilization: Any) -> None:
     """A motion of 10 half turns, with dop853 at rtol 1e-10, is sampled at 10 000 times between the
     knots. It is within 1e-8 of exact rolling: in a rotation theta grows to 30 in about 500 steps,
-    whose relative errors of 1e-10 have both signs. Residuals are at most 16 ulps of the largest
-    theta, and residuals of velocities max |psi_dot| times as large."""
+    whose relative errors of 1e-10 partly cancel, since they have either sign. The residuals of
+    position are at most 16 eps a max |theta|, and those of velocity max |psi_dot| times that."""
     times = np.sort(np.random.default_rng(1).uniform(0, 10 * half_turn(scene), 10_000))
     exact, moving = simulate(scene, times), multipliers(scene, times, stabilization=stabilization)
     for name in ("theta", "omega", "x", "psi"):

@@ -320,7 +320,8 @@ def test_no_flag_lets_the_compiler_change_the_arithmetic() -> None:
 
 @pytest.fixture
 def fused(tmp_path: Path) -> Callable[..., list[str]]:
-    """Fused instructions in an assembly made with the flags of CMakeLists.txt, -mavx2 and -mfma."""
+    """A function that finds fused instructions in a source, compiled with the flags of
+    CMakeLists.txt plus -mavx2 and -mfma."""
     if platform.machine() != "x86_64":
         pytest.skip(f"-mfma is a flag of x86-64, not of {platform.machine()}")
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")

@@ -190,7 +190,7 @@ def test_unlimited_friction_agrees_with_its_three_formulas() -> None:
     assert min(met) >= 10, met
 
 
-def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
+def test_the_energy_lost_is_minus_the_work_of_the_reaction() -> None:
     """The energy lost is minus the impulse times the mean velocity of the contact, up to roundings
     of the kinetic energy. The reaction is the momentum gained by the centre, up to roundings."""
     lossless = 0

@@ -67,8 +67,9 @@ def test_samples_miss_shortfalls_of_friction_up_to_the_square_of_their_spacing()
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_the_certificate_misses_nothing_down_to_1e_minus_11(side: int) -> None:
-    """Verdicts are right on both sides as far as double arithmetic resolves, and EDGE or right
-    beyond; `classify` agrees, since it uses the same polynomial."""
+    """On both sides of the friction needed, verdicts are right down to the distance that doubles
+    resolve; closer to it they are right or EDGE. `classify` agrees, since it uses the same
+    polynomial."""
     verdicts = []
     for k in DISTANCES:
         mu = friction(k, side)

@@ -27,7 +27,7 @@ export class Explorer extends Player {
   begin() {
     const { strips: [strip], given, axes, shape } = this.film, [width, height] = CELLS;
     Object.assign(this, { strip, axes, given: { ...given }, lowest: shape, fine: 2 });
-    Object.assign(this, { earlier: [], since: 0 }); // earlier blows, and time of the last one
+    Object.assign(this, { earlier: [], since: 0 }); // blows before the last one; its time
     this.image = Object.assign(document.createElement("canvas"), { width, height });
     this.renew();
   }

@@ -275,7 +275,7 @@ export class Player {
     return strips.map((strip, i) => {
       const [x, y] = feet[i], across = width / (this.film.columns ?? 1);
       let place = follows === "own" ? [x, -y] : follows === "middle" ? [middle, -y] : [0, 0];
-      if (follows === "edge") { // the body stays within `edge` of where it started
+      if (follows === "edge") { // the view follows a body farther than `edge` away
         const { start, edge, slope } = strip, way = states[i].x - start;
         const along = start + way - Math.min(edge, Math.max(-edge, way));
         place = [along * Math.cos(slope), -along * Math.sin(slope)];

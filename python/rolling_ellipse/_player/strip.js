@@ -21,7 +21,7 @@ export class View {
   }
 }
 
-/** Draw one motion at one time. */
+/** Draw one motion as it is at a given time. */
 export function paintStrip(ink, colours, strip, at, view, shown) {
   ink.lineJoin = "round";
   paintGround(ink, colours, strip, view, shown);

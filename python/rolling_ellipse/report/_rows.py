@@ -10,7 +10,7 @@ import numpy.typing as npt
 from .._ask.check import COORDINATES, FloatArray, choice, coordinates, finite, require_together
 from .._ask.scene import Scene
 
-Names = tuple[str, ...]  # names of the rows that are as printed
+Names = tuple[str, ...]  # parts of the matrix to use as printed, from MISPRINTS
 Pair = tuple[FloatArray, FloatArray]
 
 #: Parts of the matrix that can be used as printed: the rows of f1, f2, f3 (eq 32), the sign of a44
