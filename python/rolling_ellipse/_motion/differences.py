@@ -40,12 +40,13 @@ RULES = {
 
 
 def differenced(
-    values: FloatArray, moved: Any, side: int = 0, scale: float = 0.0
+    values: FloatArray, moved: Any, side: int = 0, scale: float = 0.0, drift: Any = 0.0
 ) -> tuple[FloatArray, FloatArray]:
     """Return derivatives from values at the nodes of a rule (first axis), and rounding errors.
 
     `moved` contains the changes of the input as rounded to doubles. Each value may have an error of
-    `_UNITS` ulp, plus the effect of as many ulp of an input of magnitude `scale`.
+    `_UNITS` ulp, of `drift` as well, plus the effect of as many ulp of an input of magnitude
+    `scale`.
     """
     weights = RULES[side][1].tolist()
     # The order of summation is the same for one vector and for many
@@ -53,7 +54,7 @@ def differenced(
     step = sum((w * change for w, change in zip(weights, moved, strict=True)), np.zeros(()))
     moves = step != 0  # a step below the rounding of the input does not change it
     slopes: FloatArray = np.divide(rise, step, out=np.zeros(rise.shape), where=moves)
-    unit = np.finfo(float).eps * (np.abs(values).max(axis=0) + scale * np.abs(slopes))
+    unit = np.finfo(float).eps * (np.abs(values).max(axis=0) + drift + scale * np.abs(slopes))
     rounding = _UNITS * sum(map(abs, weights)) * unit
     return slopes, np.divide(rounding, np.abs(step), out=np.full(rise.shape, np.inf), where=moves)
 
@@ -99,6 +100,8 @@ class Best:
             fine = self.error < FINE * np.maximum(size(self.value), self._least)
             self._done |= fine & (error > _GROWN * self.error)
             self._apart = apart
+        # Smaller steps have larger rounding errors
+        self._done |= size(rounding) > self.error
         self._last = value, size(rounding), step
         return bool(self._done.all())
 

@@ -8,10 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._ask.check import FloatArray, array, common_shape
-from .._motion.differences import RULES, STEPS, WORST, Best, differenced, size
+from .._ask.check import FloatArray, array, common_shape, uniform_disc
+from .._motion.differences import RULES, WORST, Best, differenced, size
 from .._motion.inputs import distinct
+from ..geometry import curvature_radius, support, support_slope
 from .flow import flow
+
+_SHARES = 0.016 * 0.25 ** np.arange(50)  # steps, tried in this order, relative to the natural size
+_PHASE = 16.0  # largest change of a swing's phase [rad] over its share
+_SWING = 4.0  # a swing turns the body by less than this [rad]
 
 
 def flow_jacobian(
@@ -29,9 +34,9 @@ def flow_jacobian(
 ) -> FloatArray:
     """Return the derivatives of `flow` with respect to some of its arguments.
 
-    The derivatives are differences of sixth order. Each element uses the best of twelve steps, as
-    in `Trajectory.sensitivity`. The steps are smaller for later times, because changes grow with
-    time. All arguments broadcast.
+    The derivatives are differences of sixth order. Each element uses the best of up to 50 steps, as
+    in `Trajectory.sensitivity`, of which the largest turn neighbours apart by less than 1 rad. The
+    derivatives with respect to "t" are the rates of the state. All arguments broadcast.
 
     Parameters
     ----------
@@ -49,7 +54,8 @@ def flow_jacobian(
     ------
     ValueError
         As for `flow`; or if a name is unknown or repeated; or if the results of different steps do
-        not agree to 1e-3, for example when a body has almost stopped on its tip.
+        not agree to 1e-3 of the derivatives (or of one natural unit, as in `Sensitivity`), for
+        example when a body has almost stopped on its tip, or after 1e9 s.
 
     Examples
     --------
@@ -66,29 +72,52 @@ def flow_jacobian(
     names = distinct("wrt", wrt, tuple(given))
     known = {name: array(name, value) for name, value in given.items()}
     shape = common_shape(known, slice(None))
-    flow(**given)  # rejects out-of-range numbers by name
-    length = np.maximum(known["a"], known["b"])
-    spin = np.sqrt(known["gravity"] / length)
+    theta_at, omega_at, _ = flow(**given, workers=workers)  # rejects out-of-range numbers by name
+    length, least = np.maximum(known["a"], known["b"]), np.minimum(known["a"], known["b"])
+    spin, speed = np.sqrt(known["gravity"] / length), np.abs(known["omega"])
     units = np.stack([np.broadcast_to(unit, shape) for unit in (1.0, spin, length)])
-    magnified = 1 + np.abs(known["t"]) * np.maximum(spin, np.abs(known["omega"]))
-    sizes = known | {"theta": 1.0, "slope": 1.0, "t": 1 / spin}
-    sizes["omega"] = np.maximum(np.abs(known["omega"]), spin)
-    columns = []
-    for name in names:
-        least = magnified / sizes[name]
-        best = Best((3, *shape), least)
-        for share in STEPS[::2]:
-            step = np.broadcast_to(share / least, shape)
-            places = known[name] + np.multiply.outer(RULES[0][0], step)
-            states = [flow(**known | {name: at}, workers=workers) for at in places]
-            values = np.array(states) / units
-            best.take(*differenced(values, places - known[name]), share)
-        error = best.error / np.maximum(size(best.value), least)
+    rates, gyration = _rates(theta_at, omega_at, known)
+    drift = np.abs(known["t"] * rates) / units  # a period has an error of some ulp
+    # Angles of a swing never differ by much, so that its first steps must keep its phase, which
+    # changes at most as fast as in the well of a level body
+    fastest = np.maximum(spin * np.sqrt(length**3 / (least * (gyration + least**2))), speed)
+    swings = np.abs(theta_at - known["theta"]) < _SWING
+    first = np.where(swings, 1 / (1 + np.abs(known["t"]) * fastest / _PHASE), 1.0)
+    # Neighbours of a slope stay within 1.5; the angle of a run grows with the square of time
+    tilted = np.where(swings, first, 1 / (1 + (known["t"] * spin) ** 2))
+    tilted = np.minimum(tilted, 30 - 20 * np.abs(known["slope"]))
+    sizes = known | {"theta": np.ones(()), "slope": np.ones(()), "omega": np.fmax(speed, spin)}
+    columns = {"t": rates}
+    for name in [each for each in names if each != "t"]:
+        best = Best((3, *shape), 1 / sizes[name])
+        largest = sizes[name] * (tilted if name == "slope" else first)
+        for share in _SHARES:
+            places = known[name] + np.multiply.outer(RULES[0][0], share * largest)
+            values = np.array([flow(**known | {name: at}, workers=workers) for at in places])
+            value, rounding = differenced(values / units, places - known[name], drift=drift)
+            # Neighbours more than 1 rad apart show only a mean drift
+            near = np.ptp(values[:, 0], axis=0) < 1.0
+            if best.take(value, np.where(near, rounding, np.inf), share):
+                break
+        # Of a circle, theta is only added, and on level ground it keeps its speed
+        level = (known["slope"] == 0) & (name in ("gravity", "gyration2"))
+        exact = (known["a"] == known["b"]) & (level | (name == "theta"))
+        simple = np.reshape([name == "theta", 0.0, 0.0], (3,) + (1,) * len(shape))
+        error = np.where(exact, 0.0, best.error / np.maximum(size(best.value), 1 / sizes[name]))
         if not (error < WORST).all():
-            place = [int(k) for k in np.unravel_index(int(np.argmax(error)), shape)]
+            place = f" at {[*map(int, np.unravel_index(error.argmax(), shape))]}" * bool(shape)
             raise ValueError(
-                f"wrt must be inputs with a derivative, got {name!r} at {place}, where steps agree "
+                f"wrt must be inputs with a derivative, got {name!r}{place}, where steps agree "
                 f"only to {error.max():.1g}"
             )
-        columns.append(best.value * units)
-    return np.moveaxis(np.array(columns), (0, 1), (-1, -2))
+        columns[name] = np.where(exact, simple, best.value * units)
+    return np.moveaxis(np.array([columns[name] for name in names]), (0, 1), (-1, -2))
+
+
+def _rates(theta: Any, omega: Any, known: dict[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return the rates of theta, omega and x, by physics (18) and (9), and k^2."""
+    axes, gravity, slope = {name: known[name] for name in "ab"}, known["gravity"], known["slope"]
+    h, ahead, radius = (of(theta, **axes) for of in (support, support_slope, curvature_radius))
+    push = gravity * (h * np.sin(slope) - ahead * np.cos(slope)) - ahead * radius * omega**2
+    k2 = known.get("gyration2", uniform_disc(**axes))
+    return np.array([omega, push / (k2 + h**2 + ahead**2), h * omega]), k2
