@@ -40,9 +40,9 @@ export class Workbench extends Explorer {
   open({ blows = "", ...numbers }) {
     Object.assign(this, { earlier: [], since: 0 });
     Object.assign(this.given, known(numbers, this.film.own));
-    const texts = blows.split(",");
-    while (texts.length >= 5) {
-      const [since, ...impulse] = texts.splice(0, 5).map(Number);
+    const texts = blows ? blows.split(",") : [];
+    while (texts.length) { // a missing number is NaN, which the core refuses
+      const [since, ...impulse] = Array.from({ length: 5 }, () => Number(texts.shift()));
       Object.assign(this, { earlier: this.blows(), since });
       Object.assign(this.given, this.givenOf(impulse));
     }
