@@ -20,7 +20,7 @@ import numpy as np
 from .._ask.check import FloatArray
 from ._events import half_swings, read_off
 from ._mistakes import mistakes
-from ._problem import STATE, Problem, states_of
+from ._problem import STATE, Problem, is_early
 from ._results import Rows
 
 _CLOSE = 0.01  # largest error of a value of the answer, relative to its scale
@@ -44,11 +44,11 @@ class Answer(NamedTuple):
     events: dict[str, dict[str, Any]]
 
 
-def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
+def answered(one: Problem, mine: Rows, rows: Any, places: Any, exact: FloatArray) -> Answer:
     """Return whether the usable rows answer the question, and why or why not.
 
     `rows` are the indices of the compared rows in the problem, and `places` are the indices of the
-    result's rows at the same times.
+    result's rows at the same times. `exact` contains the exact states at all rows of the result.
     """
     states, law, wrong = _nearest_law(one, rows, mine.states[places])
     events: dict[str, dict[str, Any]] = {}
@@ -62,26 +62,26 @@ def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
     if (known := one.answer.get("half_swings", swings)) != swings:
         wrong.append(f"{swings} half swings, right {known}")
     if "events" in one.answer or mine.events is not None:
-        differences, events = _events(one, mine)
+        differences, events = _events(one, mine, exact)
         wrong += differences
     wrong += mistakes(one, mine, rows, places)
     errors = np.abs(mine.states[places] - states) / one.scales
     if not wrong and not (errors / one.condition[rows, None]).max(initial=0.0) <= _NEAR:
         wrong = ["the states are those of another motion"]
-    if not (wrong or one.laws or _is_near_between(one, mine)):
+    if not (wrong or one.laws or _is_near_between(one, mine, exact)):
         wrong = ["between the tabulated times, the states are those of another motion"]
     return Answer(not wrong, law + wrong, errors, events)
 
 
-def _is_near_between(one: Problem, mine: Rows) -> bool:
+def _is_near_between(one: Problem, mine: Rows, exact: FloatArray) -> bool:
     """Return whether all rows before the horizon are near the exact motion.
 
     Near an impact, a row may have the velocities of its other side.
     """
-    early = (mine.t < one.horizon) | (one.horizon == one.t_end)
-    exact = states_of(one.trajectory.sol(mine.t[early])) / one.scales
-    off = np.abs(mine.states[early] / one.scales - exact)
-    off[:, 3:] -= 2 * np.abs(exact[:, 3:]).max(initial=0.0)
+    early = is_early(one, mine.t)
+    right = exact[early] / one.scales
+    off = np.abs(mine.states[early] / one.scales - right)
+    off[:, 3:] -= 2 * np.abs(right[:, 3:]).max(initial=0.0)
     grown = np.interp(mine.t[early], one.times, np.maximum.accumulate(one.condition))
     return bool((off <= _NEAR * grown[:, None]).all())
 
@@ -120,14 +120,13 @@ def _nearest_law(
     return motions[first][rows], [], [f"no law is followed: {nearest}"]
 
 
-def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
+def _events(one: Problem, mine: Rows, exact: FloatArray) -> tuple[list[str], dict[str, Any]]:
     """Compare reported events with the known ones, or events detected in both motions.
 
     The same rule detects events in both motions, so that its error cancels. For bounces that die
     out, only the first ones and the time at which they end are compared.
     """
     if mine.events is None:
-        exact = states_of(one.trajectory.sol(mine.t))
         return _differences(one, read_off(one, mine.t, mine.states), read_off(one, mine.t, exact))
     known = [(event.kind.name, event.t) for event in one.events]
     if "end" not in one.answer:

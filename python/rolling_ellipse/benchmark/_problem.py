@@ -299,6 +299,11 @@ def _made(name: str) -> Problem:
     )  # fmt: skip
 
 
+def is_early(one: Problem, t: FloatArray) -> Any:
+    """Return whether states at times are scored: before the horizon, or always."""
+    return (t < one.horizon) | (one.horizon == one.t_end)
+
+
 def _fixed(values: Any) -> FloatArray:
     """Return a read-only array, since problems are shared by all simulators."""
     return frozen(np.array(values, dtype=float))

@@ -17,7 +17,7 @@ from .._motion.energies import energies
 from .._motion.trajectory import Trajectory
 from ._answers import answered
 from ._events import gap_and_slip
-from ._problem import STATE, Problem, scored_ones
+from ._problem import STATE, Problem, is_early, scored_ones, states_of
 from ._results import Rows
 
 if TYPE_CHECKING:
@@ -272,9 +272,10 @@ def scored(one: Problem, setting: float | None, mine: Rows, tolerance: float) ->
         why = "; ".join(["no row is finite and within its time", *filter(None, [mine.not_finite])])
         return Score(one.id, setting, FAILED, reason=why, tolerance=tolerance)
     rows, places = np.nonzero(one.times[:, None].round(9) == mine.t.round(9))
-    early = (one.times[rows] < one.horizon) | (one.horizon == one.t_end)
+    early = is_early(one, one.times[rows])
     rows, places = rows[early], places[early]
-    answer = answered(one, mine, rows, places)
+    exact = one.trajectory.sol(mine.t)
+    answer = answered(one, mine, rows, places, states_of(exact))
     errors = answer.errors.max(axis=0) if rows.size else np.full(6, math.nan)
     over = (answer.errors.max(axis=1) / one.condition[rows]).max() if rows.size else math.nan
     ends = f"ends at {mine.t[-1]:.6g} s" if mine.t[-1] < (1 - 1e-9) * one.t_end else ""
@@ -284,7 +285,7 @@ def scored(one: Problem, setting: float | None, mine: Rows, tolerance: float) ->
         one.id, setting, FAILED if failed else RIGHT if answer.right else WRONG,
         not failed and answer.right and not mine.missing and bool(over <= tolerance),
         "; ".join(text for text in reasons if text), errors, float(over), answer.events,
-        **_losses(one, mine.states, one.trajectory.sol(mine.t)),
+        **_losses(one, mine.states, exact),
         **_forces(one, mine, rows, places), tolerance=tolerance,
     )  # fmt: skip
 
