@@ -87,7 +87,8 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     marks: dict[str, dict[str, Mark]] = {}
     refused: dict[int, str] = {}
     for row in rows[1:]:
-        student, word, task, answer = (row.entries(names)[name] for name in COLUMNS)
+        entries = row.entries(names)
+        student, word, task, answer = (entries[name] for name in COLUMNS)
         of = marks.setdefault(student, {}) if student else {}
         why = row.wrong(len(names)) or ("" if student else "student must be a name, got none")
         seed: Any = int(word) if re.fullmatch("[+-]?[0-9]{1,640}", word) else word or None
