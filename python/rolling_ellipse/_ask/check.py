@@ -60,6 +60,11 @@ def number(name: str, value: Any) -> float:
     return float(double)
 
 
+def double_in(text: str) -> float:
+    """Return the number in a text; unlike `float`, reject underscores between digits."""
+    return float(text.replace("_", "?"))
+
+
 def optional_number(name: str, value: Any) -> float | None:
     return None if value is None else number(name, value)
 

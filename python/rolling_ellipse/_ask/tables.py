@@ -69,8 +69,3 @@ def require_fields(name: str, rows: list[Row], columns: int, table: Any) -> None
     for row in rows:
         if wrong := row.wrong(columns):
             raise ValueError(f"{name} must be a table, but in {table} {wrong}")
-
-
-def double_in(text: str) -> float:
-    """Return the number in a field; unlike `float`, reject underscores between digits."""
-    return float(text.replace("_", "?"))

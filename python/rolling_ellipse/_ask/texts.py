@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import Any
 
 from .. import _core
-from .check import evaluate, finite, positive, readable, shown
+from .check import double_in, evaluate, finite, positive, readable, shown
 from .habits import meant
 from .impulse import Impulse
 
@@ -183,5 +183,5 @@ def _number(name: str, value: Any) -> Any:
 def _linked(name: str, text: str) -> Any:
     value: Any = text
     with suppress(ValueError):
-        value = text if "_" in text else float(text)  # Python reads 1_0 as 10
+        value = double_in(text)
     return _number(name, value)

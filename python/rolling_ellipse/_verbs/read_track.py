@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, choice, flag, positive, require, shown
-from .._ask.tables import Row, double_in, lines_in, require_fields, rows_in
+from .._ask.check import FloatArray, choice, double_in, flag, positive, require, shown
+from .._ask.tables import Row, lines_in, require_fields, rows_in
 from .._motion.inputs import distinct
 from .._motion.samples import vector
 

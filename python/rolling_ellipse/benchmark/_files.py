@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .._ask.check import choice, file_name
-from .._ask.tables import double_in, lines_in, require_fields, rows_in
+from .._ask.check import choice, double_in, file_name
+from .._ask.tables import lines_in, require_fields, rows_in
 from .._motion.export.new_files import write_new
 from ._problem import COLUMNS, FOLDER, STATE, Problem, problems, scored_ones
 from ._results import KINDS, Result
