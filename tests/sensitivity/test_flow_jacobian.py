@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from rolling_ellipse import Scene, flow, flow_jacobian, period
 from scipy.integrate import cumulative_simpson, solve_ivp
+from sensitivity import chain
+from sensitivity.chain import support
 
 GRAVITY = 9.81
 TIMES = (1.0, 30.0, 1e3, 1e5, 1e6, 1e7, 1e8, 1e9)
@@ -44,14 +46,10 @@ def size_of(known: dict[str, float], name: str) -> float:
 
 
 def rates(known: dict[str, Any], theta: Any, omega: Any) -> Any:
-    """Rates of theta, omega, x from the energy W omega^2/2 + g (h cos slope - x sin slope)."""
-    a2, b2, sine, cosine = known["a"] ** 2, known["b"] ** 2, np.sin(theta), np.cos(theta)
-    h = np.sqrt(a2 * sine**2 + b2 * cosine**2)
-    h1 = (a2 - b2) * sine * cosine / h
-    h2 = ((a2 - b2) * (cosine**2 - sine**2) - h1**2) / h
-    weight, half = known["gyration2"] + h**2 + h1**2, h1 * (h + h2)
-    pull = known["gravity"] * (h * np.sin(known["slope"]) - h1 * np.cos(known["slope"]))
-    return np.array([omega, (pull - half * omega**2) / weight, h * omega])
+    """Rates of theta, omega, x."""
+    body, state = known | {"inertia": known["gyration2"], "mass": 1.0}, [0, 0, theta, 0, 0, omega]
+    turn = chain.rates("ROLLING", 0, state, body)[5]
+    return np.array([omega, turn, support(theta, body)[0] * omega])
 
 
 def integrated(known: dict[str, float], name: str, t: float) -> tuple[Any, Any]:
@@ -99,8 +97,7 @@ def tilted(known: dict[str, float], state: Any) -> Any:
         """x, and the integrals of 1/(W |omega|^3) and x/(W |omega|^3) up to an angle."""
         angle = np.linspace(0.0, end, 10_001)
         theta = known["theta"] + way * angle
-        h = np.hypot(known["a"] * np.sin(theta), known["b"] * np.cos(theta))
-        h1 = (known["a"] ** 2 - known["b"] ** 2) * np.sin(2 * theta) / (2 * h)
+        h, h1, _ = support(theta, known)
         weight = known["gyration2"] + h**2 + h1**2
         energy = weight[0] * known["omega"] ** 2 / 2 + known["gravity"] * (h[0] - h)
         x = way * cumulative_simpson(h, x=angle, initial=0)
